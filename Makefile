@@ -1,0 +1,34 @@
+# make mms: set up .venv, run the study of the paper's Figure 1, print where the report is.   make test: all checks.
+PYTHON ?= python3
+BIN = .venv/bin
+
+.PHONY: mms test slow bench lock clean
+
+mms: .venv/.installed
+	$(BIN)/verify mms --method cpdi
+
+test: .venv/.installed
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/pytest
+
+slow: .venv/.installed
+	$(BIN)/pytest -m slow
+
+bench: .venv/.installed
+	$(BIN)/pytest tests/benchmarks --benchmark-only -m "slow or not slow"
+
+.venv/.installed: requirements.lock pyproject.toml
+	$(PYTHON) -c "import sys; sys.exit(sys.version_info < (3, 11) and 'Python 3.11 or newer is needed: make PYTHON=python3.12')"
+	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.lock
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
+	touch $@
+
+lock: .venv/.installed
+	$(BIN)/python -m pip install --quiet pip-tools
+	$(BIN)/pip-compile --quiet --generate-hashes --allow-unsafe --strip-extras --extra dev --no-emit-index-url --no-emit-trusted-host --output-file requirements.lock pyproject.toml
+
+clean:
+	rm -rf .venv results

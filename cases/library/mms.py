@@ -1,0 +1,129 @@
+"""The MMS convergence case: a manufactured solution run on one grid, with the errors of u, v, F and sigma."""
+
+import resource
+import sys
+import time
+from dataclasses import dataclass
+from math import ceil, sqrt
+from typing import Any
+
+import numpy as np
+
+from cases.environment import environment
+from cases.norms import Norms, compare, new_shares
+from cases.store import Arrays
+from cases.study import QUANTITIES, Failure, Result, Run
+from mms.manufacture import Manufactured, manufacture
+from solver.boundary import box
+from solver.plugins import create, load
+from solver.state import Floats, Grid, Particles, fill_rectangle
+from solver.step import Model, RunFailed, Scheme, advance, check_time_step
+
+
+@dataclass
+class Comparison:
+    """Body force and errors from one call of the exact kernel: it gives both at the time that x, F and sigma have."""
+
+    exact: Manufactured
+    norms: Norms
+    shares: Floats
+    behind: float  # how far v is behind x in time
+
+    def __call__(self, particles: Particles, t: float) -> None:
+        """Write particles.b at time t; add the errors of that time to the norms, the start left out."""
+        scalars = self.exact.kernel.scalars(t, t - self.behind)
+        compare(
+            self.exact.kernel.fill, particles.carried, scalars, particles.X, particles.x, particles.v, particles.F,
+            particles.sigma, particles.V0, particles.b, self.shares,
+        )  # fmt: skip
+        if t > 0:
+            self.norms.add(self.shares)
+
+
+def setup(run: Run) -> tuple[Model, Comparison, int]:
+    """Model at t = 0, what compares it with the exact solution, and the number of steps.
+
+    dt = courant dx / C, shortened so that whole steps fill the duration. x, F and sigma start exact, v exact at -dt/2.
+    """
+    solution: Any = create("mms.solutions", run.solution)
+    material: Any = create("solver.material", run.material)
+    grid = Grid(float(solution.upper[0] - solution.lower[0]) / run.cells, solution.lower, solution.upper)
+    particles = fill_rectangle(grid, run.ppc, material.rho0)
+    steps = ceil(solution.duration / (run.courant * grid.dx / solution.C) * (1 - 1e-12))
+    dt = solution.duration / steps
+    behind = 0.5 * dt if run.staggered else 0.0
+
+    exact = manufacture(solution, material)
+    X = particles.X
+    particles.x, particles.v = exact.x(X, 0.0), exact.v(X, -behind)
+    particles.F, particles.sigma = exact.F(X, 0.0), exact.sigma(X, 0.0)
+    particles.carried = exact.kernel.columns(X)
+    scheme, basis = Scheme(run.flip, run.staggered), load("solver.basis", run.method)()
+    model = Model(grid, particles, basis, material, box(grid, solution.boundary), dt, scheme)
+    norms = Norms(len(particles), float(particles.V0.mean()))
+    return model, Comparison(exact, norms, new_shares(particles), behind), steps
+
+
+def execute(run: Run) -> tuple[Result, Arrays]:
+    """Run to the end, or to where it cannot go on: a failed run is a Result."""
+    model, comparison, steps = setup(run)
+    failure, started = None, time.perf_counter()
+    try:
+        if not run.force:
+            check_time_step(model)
+        for _ in range(steps):
+            advance(model, comparison)
+        comparison(model.particles, model.time)
+    except RunFailed as reason:
+        failure = Failure(reason.reason, reason.step, reason.particle, reason.cell)
+    wall = time.perf_counter() - started
+    scale = magnitude(comparison.exact, model.particles.X, steps * model.dt)
+    result = Result(
+        run=run,
+        digest=run.digest,
+        status="failed" if failure else "finished",
+        errors={} if failure else comparison.norms.errors(),
+        steps=model.steps,
+        particles=len(model.particles),
+        dt=model.dt,
+        wall_s=wall,
+        peak_memory_mb=peak_memory(),
+        scale=scale,
+        floor={} if failure else round_off(scale, model),
+        failure=failure,
+        environment=environment(),
+    )
+    return result, snapshot(model, comparison)
+
+
+def magnitude(exact: Manufactured, X: Floats, duration: float) -> dict[str, float]:
+    """rms of the exact quantities, from some thousand places and sixteen times."""
+    some = X[:: max(1, len(X) // 1000)]
+    times = duration * (np.arange(16) + 0.5) / 16
+    fields = {"u": exact.u, "v": exact.v, "F": exact.F, "sigma": exact.sigma}
+    squares = {q: np.mean([np.sum(f(some, t) ** 2) / len(some) for t in times]) for q, f in fields.items()}
+    return {quantity: sqrt(square) for quantity, square in squares.items()}
+
+
+def round_off(scale: dict[str, float], model: Model) -> dict[str, float]:
+    """Round-off floor: half a digit of the largest number involved, in a random walk over the steps.
+
+    u is the difference of places of size L, and F of numbers near one; v and sigma have the size of their exact values.
+    """
+    walk = np.finfo(float).eps * sqrt(max(1, model.steps))
+    size = {**scale, "u": float(np.ptp(model.particles.X)), "F": 1.0}
+    return {quantity: float(walk * size[quantity]) for quantity in QUANTITIES}
+
+
+def snapshot(model: Model, comparison: Comparison) -> Arrays:
+    """The particles at the last step in the initial order, float32, for figures."""
+    p = model.particles
+    arrays = {name: p.in_initial_order(name) for name in ("X", "x", "F", "r0")}
+    error = arrays["x"] - comparison.exact.x(arrays["X"], model.time)
+    return {name: a.astype(np.float32) for name, a in {**arrays, "error_u": np.hypot(*error.T)}.items()}
+
+
+def peak_memory() -> float:
+    """Largest resident size of this process so far, MB."""
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return peak / (2**20 if sys.platform == "darwin" else 2**10)

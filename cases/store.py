@@ -1,0 +1,101 @@
+"""The run store: one folder a study, one Result a run, written atomically; what is stored is not run again.
+
+    DIR/study.json           the Study
+    DIR/runs/<digest>.json   a Result
+    DIR/runs/<digest>.npz    the particles at its last step: X, x (P,2), F (P,2,2), r0 (P,2,2), error_u (P,), float32
+"""
+
+import json
+import os
+import tempfile
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from pydantic import TypeAdapter, ValidationError
+
+from cases.study import FORMAT, Result, Study
+
+Arrays = dict[str, "np.ndarray[Any, np.dtype[np.float32]]"]
+
+
+class StoreError(Exception):
+    """The folder cannot be read or written; the message is one line that says what to do."""
+
+
+class Store:
+    """Results on disk below `folder`. Raises StoreError where the folder cannot be made, read or written."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.runs = folder / "runs"
+
+    def create(self, study: Study) -> None:
+        """Make the folder and write study.json; Results already there stay."""
+        try:
+            self.runs.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise StoreError(f"cannot make the study folder {self.folder}: {error.strerror}; give a writable one with --out") from error
+        self._write(self.folder / "study.json", json.dumps(asdict(study), indent=1).encode())
+
+    def study(self) -> Study:
+        """The Study of this folder."""
+        path = self.folder / "study.json"
+        study: Study = self._read(path, TypeAdapter(Study))
+        return study
+
+    def put(self, result: Result, arrays: Arrays) -> None:
+        """Write arrays, then the Result: the JSON file is what makes a run stored."""
+        path = self.runs / result.digest
+        with tempfile.TemporaryFile() as buffer:
+            np.savez(buffer, allow_pickle=False, **arrays)
+            buffer.seek(0)
+            self._write(path.with_suffix(".npz"), buffer.read())
+        self._write(path.with_suffix(".json"), json.dumps(asdict(result), indent=1).encode())
+
+    def get(self, digest: str) -> Result | None:
+        """The stored Result of that name, None if the run is still to be done."""
+        path = self.runs / f"{digest}.json"
+        if not path.exists():
+            return None
+        result: Result = self._read(path, TypeAdapter(Result))
+        return result
+
+    def arrays(self, digest: str) -> Arrays:
+        """The particles of that run at its last step."""
+        path = self.runs / f"{digest}.npz"
+        try:
+            with np.load(path, allow_pickle=False) as stored:
+                return {name: stored[name] for name in stored.files}
+        except (OSError, ValueError) as error:
+            raise StoreError(f"cannot read {path}: {error}; delete it and its .json file to run that run again") from error
+
+    @staticmethod
+    def _read(path: Path, adapter: TypeAdapter[Any]) -> Any:
+        try:
+            data = json.loads(path.read_bytes())
+            if data.get("format") != FORMAT:
+                raise StoreError(f"{path} has format {data.get('format')}, this version reads {FORMAT}; use another --out folder")
+            return adapter.validate_python(data)
+        except FileNotFoundError as error:
+            raise StoreError(f"{path.parent} is no study folder: it holds no {path.name}") from error
+        except (OSError, ValueError, AttributeError, ValidationError) as error:
+            raise StoreError(f"{path} is broken and was left as it is; move it away, and what it held is made again") from error
+
+    @staticmethod
+    def _write(path: Path, data: bytes) -> None:
+        """Atomic: a reader sees the old file or the whole new one, whenever the power goes."""
+        try:
+            handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+            try:
+                with os.fdopen(handle, "wb") as file:
+                    file.write(data)
+                    file.flush()
+                    os.fsync(file.fileno())
+                os.replace(temporary, path)
+            except BaseException:
+                Path(temporary).unlink(missing_ok=True)
+                raise
+        except OSError as error:
+            raise StoreError(f"cannot write {path}: {error.strerror}; results stored before are kept") from error

@@ -1,0 +1,108 @@
+"""What is run and what is expected of it: Run, Result and Study, plain data that the store writes and the report reads."""
+
+import hashlib
+import json
+from dataclasses import asdict, dataclass, field
+from functools import cache
+from typing import Literal
+
+from cases.order import Expectation
+from solver.sources import TOP, digest
+
+FORMAT = 1  # of study.json and of every Result; a reader refuses another number
+QUANTITIES = ("u", "v", "F", "sigma")
+NORMS = ("rms", "max", "final", "printed")
+Status = Literal["finished", "failed"]
+
+
+@cache
+def sources_digest() -> str:
+    """Hash of every source that a stored number depends on: the solver, the derivation, the norms and the cases."""
+    files = [*TOP.glob("solver/**/*.py"), *TOP.glob("mms/**/*.py"), *TOP.glob("cases/library/*.py"), TOP / "cases/norms.py"]
+    return digest(files)
+
+
+@dataclass(frozen=True)
+class Run:
+    """One frozen point of a sweep; its digest is its name.
+
+    `solution` and `material` are specifications: a name, or a name with parameters (`axis_aligned:A=0.01,phase=0.5`).
+    `courant` is C dt / dx, with C the reference speed of the solution.
+    """
+
+    method: str
+    solution: str
+    material: str
+    cells: int
+    ppc: int
+    courant: float
+    flip: float = 1.0
+    staggered: bool = True
+    force: bool = False
+    case: str = "mms"
+
+    @property
+    def digest(self) -> str:
+        """Name of the Result: hash of the parameters and of the sources, 16 hex digits."""
+        text = json.dumps(asdict(self), sort_keys=True) + sources_digest()
+        return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+@dataclass(frozen=True)
+class Failure:
+    """Why a run could not go on: a result, not a crash. `particle` is its index in the initial layout, -1 if none."""
+
+    reason: str
+    step: int = 0
+    particle: int = -1
+    cell: tuple[int, int] | None = None
+
+    def __str__(self) -> str:
+        where = f", particle {self.particle}" if self.particle >= 0 else ""
+        where += f" in cell {self.cell}" if self.cell else ""
+        return f"{self.reason} at step {self.step}{where}"
+
+
+@dataclass(frozen=True)
+class Result:
+    """What one Run gave. `errors[quantity][norm]`; lengths in units of the domain, time in those of the problem."""
+
+    run: Run
+    digest: str
+    status: Status
+    errors: dict[str, dict[str, float]]
+    steps: int
+    particles: int
+    dt: float
+    wall_s: float
+    peak_memory_mb: float
+    scale: dict[str, float] = field(default_factory=dict)  # rms of the exact quantity, to make errors relative
+    floor: dict[str, float] = field(default_factory=dict)  # round-off floor of the quantity
+    failure: Failure | None = None
+    environment: dict[str, str] = field(default_factory=dict)
+    format: int = FORMAT
+
+
+@dataclass(frozen=True)
+class Declared:
+    """A quantity the study judges, or only shows, with what is expected of it; declared before the study runs."""
+
+    method: str
+    solution: str
+    ppc: int
+    quantity: str
+    norm: str
+    judged: bool
+    expectation: Expectation | None
+
+
+@dataclass(frozen=True)
+class Study:
+    """The runs of one sweep and what is declared of them. `command` repeats it."""
+
+    name: str
+    title: str
+    command: str
+    runs: tuple[Run, ...]
+    declared: tuple[Declared, ...]
+    format: int = FORMAT

@@ -1,0 +1,91 @@
+"""From a displacement and an energy to stress and body force, by SymPy and the chain rule.
+
+    F = I + du/dX,  P = dW/dF,  sigma = P F^T / det F,  b = d2u/dt2 - Div P / rho0,
+    Div P_i = sum over J, k, L of d2W/dF_iJ dF_kL * d2u_k/dX_L dX_J
+
+The energy is differentiated once, by the components of F as symbols; nothing is simplified (it does not end on these).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import product
+from typing import Any, Protocol
+
+import sympy as sp
+
+Expressions = list[sp.Expr]
+
+
+class Energy(Protocol):
+    """What a law must offer to be manufactured for."""
+
+    rho0: float
+
+    def energy(self, F: Any, log: Any) -> Any:
+        """Stored energy per initial volume of a 3 x 3 deformation gradient."""
+
+
+class Solution(Protocol):
+    """A displacement field as a plug-in of mms/solutions; the problem statement is its docstring."""
+
+    def displacement(self, X: Sequence[sp.Symbol], t: sp.Symbol) -> sp.Matrix:
+        """u of the reference place X = (X, Y) and the time t."""
+
+
+@dataclass(frozen=True)
+class Fields:
+    """Expressions in X, Y and t. Components in the order of the solver: F and P xx, xy, yx, yy; sigma xx, yy, zz, xy.
+
+    P, sigma and b are written in the symbols of `inner`, which stand for components of F, of its gradient and of the
+    acceleration; `full` puts those in.
+    """
+
+    X: tuple[sp.Symbol, sp.Symbol]
+    t: sp.Symbol
+    u: Expressions
+    v: Expressions
+    F: Expressions
+    P: Expressions
+    sigma: Expressions
+    b: Expressions
+    inner: dict[sp.Symbol, sp.Expr]
+
+    def full(self, expressions: Expressions) -> Expressions:
+        """The expressions in X, Y and t alone."""
+        return [sp.sympify(e).xreplace(self.inner) for e in expressions]
+
+
+def derive(solution: Solution, material: Energy) -> Fields:
+    """All fields of `solution` in a body of `material`."""
+    X, t = sp.symbols("X Y", real=True), sp.Symbol("t", real=True)
+    u = [sp.sympify(component) for component in solution.displacement(X, t)]
+    f = sp.symbols("Fxx Fxy Fyx Fyy", real=True)
+    Fzz = sp.Symbol("Fzz", real=True)
+    W = material.energy([[f[0], f[1], 0], [f[2], f[3], 0], [0, 0, Fzz]], sp.log)
+    P = [sp.diff(W, component).xreplace({Fzz: sp.Integer(1)}) for component in (*f, Fzz)]
+    F = [sp.diff(u[k], X[L]) + int(k == L) for k in (0, 1) for L in (0, 1)]
+
+    inner: dict[sp.Symbol, sp.Expr] = dict(zip(f, F, strict=True))
+    divergence = [sp.Integer(0), sp.Integer(0)]
+    for i, J, q in product((0, 1), (0, 1), range(4)):  # q runs over the components kL of F
+        second = inner_symbol(inner, sp.diff(F[q], X[J]), f"d{f[q]}_d{X[J]}")
+        divergence[i] += sp.diff(P[2 * i + J], f[q]) * second
+    b = [inner_symbol(inner, sp.diff(u[i], t, 2), f"a{X[i]}") - divergence[i] / material.rho0 for i in (0, 1)]
+
+    J = f[0] * f[3] - f[1] * f[2]
+    sigma = [
+        (P[0] * f[0] + P[1] * f[1]) / J,
+        (P[2] * f[2] + P[3] * f[3]) / J,
+        P[4] / J,
+        (P[0] * f[2] + P[1] * f[3]) / J,
+    ]
+    zeros = {symbol: e for symbol, e in inner.items() if e.is_number}  # a diagonal F makes most terms vanish
+    P, sigma, b = ([sp.sympify(e).xreplace(zeros) for e in group] for group in (P[:4], sigma, b))
+    return Fields(X, t, u, [sp.diff(e, t) for e in u], F, P, sigma, b, inner)
+
+
+def inner_symbol(inner: dict[sp.Symbol, sp.Expr], expression: sp.Expr, name: str) -> sp.Symbol:
+    """The symbol that stands for `expression`, new or known by its name."""
+    symbol = sp.Symbol(name, real=True)
+    inner[symbol] = expression
+    return symbol

@@ -1,0 +1,82 @@
+"""manufacture(): a displacement and a material become exact fields and the body force that makes them a solution."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import sympy as sp
+
+from mms.derive import Energy, Expressions, Fields, Solution, derive
+from mms.exact import ExactKernel, compile_exact
+from solver.state import Floats
+
+Field = Callable[[Floats, float], Floats]
+
+
+@dataclass(frozen=True)
+class Manufactured:
+    """Exact fields as functions of (X, t): X (P,2), t a number.
+
+    u, x, v, b give (P,2); F and P (P,2,2), rows the components of the deformed place; sigma (P,4) in the order xx, yy,
+    zz, xy; b is the body force per mass.
+    """
+
+    fields: Fields
+
+    def x(self, X: Floats, t: float) -> Floats:
+        """Place."""
+        return X + self.u(X, t)
+
+    @cached_property
+    def u(self) -> Field:
+        """Displacement."""
+        return self._function(self.fields.u, (2,))
+
+    @cached_property
+    def v(self) -> Field:
+        """Velocity."""
+        return self._function(self.fields.v, (2,))
+
+    @cached_property
+    def F(self) -> Field:
+        """Deformation gradient."""
+        return self._function(self.fields.F, (2, 2))
+
+    @cached_property
+    def P(self) -> Field:
+        """First Piola stress."""
+        return self._function(self.fields.P, (2, 2))
+
+    @cached_property
+    def sigma(self) -> Field:
+        """Cauchy stress."""
+        return self._function(self.fields.sigma, (4,))
+
+    @cached_property
+    def b(self) -> Field:
+        """Body force per mass."""
+        return self._function(self.fields.b, (2,))
+
+    @cached_property
+    def kernel(self) -> ExactKernel:
+        """The same fields as one compiled kernel for blocks of particles."""
+        return compile_exact(self.fields)
+
+    def _function(self, expressions: Expressions, shape: tuple[int, ...]) -> Field:
+        compiled: Any = sp.lambdify((*self.fields.X, self.fields.t), self.fields.full(expressions), "numpy", cse=True)
+
+        def evaluate(X: Floats, t: float) -> Floats:
+            values = [np.broadcast_to(value, len(X)) for value in compiled(X[:, 0], X[:, 1], t)]
+            return np.stack(values, axis=-1).astype(np.float64).reshape(len(X), *shape)
+
+        return evaluate
+
+
+def manufacture(solution: Solution, material: Energy) -> Manufactured:
+    """Exact x, v, F, sigma, P and b for a displacement field in a body of `material` with its density rho0.
+
+    The source term comes from the material's energy by differentiation, never from the stress the solver computes.
+    """
+    return Manufactured(derive(solution, material))

@@ -1,0 +1,51 @@
+"""What the solutions on a square have in common: the domain, the reference speed and the duration."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from solver.state import Floats
+
+if TYPE_CHECKING:
+    import sympy as sp
+
+
+@dataclass(frozen=True)
+class Square:
+    """Side L and reference speed C, above zero (ValueError otherwise); the study lasts 2 L / C."""
+
+    L: float = 1.0
+    C: float = 100.0
+
+    def __post_init__(self) -> None:
+        if not (self.L > 0 and self.C > 0):
+            raise ValueError(f"L = {self.L} and C = {self.C} must be above zero")
+
+    @property
+    def lower(self) -> Floats:
+        """Lower corner of the domain, (2,)."""
+        return np.zeros(2)
+
+    @property
+    def upper(self) -> Floats:
+        """Upper corner of the domain, (2,)."""
+        return np.full(2, self.L)
+
+    @property
+    def duration(self) -> float:
+        """Time that a study covers."""
+        return 2 * self.L / self.C
+
+    @staticmethod
+    def limit(name: str, value: float, bound: float) -> None:
+        """Raise ValueError unless |value| < bound: beyond it F is not invertible somewhere."""
+        if not abs(value) < bound:
+            raise ValueError(f"{name} = {value} must be below {bound:.4g} in size, or F is not invertible")
+
+    @staticmethod
+    def exact(value: float) -> Any:
+        """Whole numbers as integers, so that SymPy keeps sin(2 pi X) and its like exact."""
+        import sympy as sp
+
+        return sp.Integer(int(value)) if float(value).is_integer() else sp.Float(value)

@@ -1,0 +1,53 @@
+"""Walls: velocity components that are given at nodes, and the grid's equation of motion."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numba import prange
+from numpy.typing import NDArray
+
+from solver._jit import F1, F2, f8, flag, i8, kernel, nothing
+from solver.state import Floats, Grid
+
+Kind = Literal["roller", "fixed"]
+MASS_CUTOFF = 1e-12  # of a particle's mass: below it a node's velocity is 0/0
+
+
+@dataclass
+class Walls:
+    """`held` (n,2): where a component of the velocity is given; `value` (n,2): what it is given as."""
+
+    held: NDArray[np.bool_]
+    value: Floats
+
+
+def box(grid: Grid, kind: Kind) -> Walls:
+    """Walls on the four sides of the domain: on them and behind them, where corners of domains may reach.
+
+    A roller holds the normal component, a fixed wall both. Raises ValueError for another kind.
+    """
+    if kind not in ("roller", "fixed"):
+        raise ValueError(f"no wall {kind!r}; choose from roller, fixed")
+    slack = 1e-9 * grid.dx
+    behind = (grid.nodes <= grid.lower + slack) | (grid.nodes >= grid.upper - slack)
+    if kind == "fixed":
+        behind = np.repeat(behind.any(axis=1, keepdims=True), 2, axis=1)
+    return Walls(np.ascontiguousarray(behind), np.zeros(behind.shape))
+
+
+@kernel(nothing(F1, F2, F2, flag[:, ::1], F2, f8, f8, i8), parallel=True)
+def solve(mass, given, motion, held, value, dt, cutoff, ny):  # type: ignore[no-untyped-def]
+    """Velocity at the end of the step and acceleration at every node; m a = f, or what the wall makes of it."""
+    for column in prange(mass.shape[0] // ny):
+        for i in range(column * ny, (column + 1) * ny):
+            inverse = 1.0 / mass[i] if mass[i] > cutoff else 0.0
+            for a in range(2):
+                before = inverse * given[i, a]
+                acceleration = inverse * given[i, 2 + a]
+                velocity = before + dt * acceleration
+                if held[i, a]:
+                    velocity = value[i, a]
+                    acceleration = 0.0
+                motion[i, a] = velocity
+                motion[i, 2 + a] = acceleration

@@ -1,0 +1,36 @@
+"""Elastic constants, validated once for every elastic law."""
+
+from dataclasses import dataclass
+from math import sqrt
+
+
+@dataclass(frozen=True)
+class Elastic:
+    """Young's modulus E and density rho0 above zero, Poisson's ratio -1 < nu < 0.5; raises ValueError otherwise.
+
+    The defaults are those of the paper's section 2.1, free of units: lengths in L, speeds in sqrt(E / rho0) / 100.
+    """
+
+    E: float = 1e4
+    nu: float = 0.3
+    rho0: float = 1.0
+
+    def __post_init__(self) -> None:
+        if not (self.E > 0 and self.rho0 > 0):
+            raise ValueError(f"E = {self.E} and rho0 = {self.rho0} must be above zero")
+        if not -1 < self.nu < 0.5:
+            raise ValueError(f"nu = {self.nu} must lie between -1 and 0.5")
+
+    @property
+    def mu(self) -> float:
+        """Shear modulus."""
+        return self.E / (2 * (1 + self.nu))
+
+    @property
+    def lam(self) -> float:
+        """Lame's first constant."""
+        return self.E * self.nu / ((1 + self.nu) * (1 - 2 * self.nu))
+
+    def wave_speed(self) -> float:
+        """Compression wave in the undeformed state, sqrt((lam + 2 mu) / rho0)."""
+        return sqrt((self.lam + 2 * self.mu) / self.rho0)

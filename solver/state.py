@@ -1,0 +1,117 @@
+"""Grid and Particles: structures of arrays, float64, C order. Plane strain; lengths, masses and stresses in one system."""
+
+from dataclasses import dataclass, field, fields
+from math import isqrt
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+PAD = 2  # ghost cells beyond the domain: corners of particle domains reach behind the walls
+
+
+@dataclass
+class Grid:
+    """Square cells of side `dx` over a rectangle and `PAD` ghost cells around it; node (i, j) has the number i*ny + j.
+
+    `origin` (2,) is the place of node 0, `lower` and `upper` (2,) the corners of the domain without ghost cells.
+    `mass` (n,); `momentum`, `force`, `velocity`, `acceleration` (n, 2) are halves of two (n, 4) arrays, so that a
+    particle reaches both with one cache line.
+    """
+
+    dx: float
+    lower: Floats
+    upper: Floats
+    nx: int = field(init=False)
+    ny: int = field(init=False)
+    origin: Floats = field(init=False)
+    mass: Floats = field(init=False)
+    given: Floats = field(init=False)  # momentum, force: what the particles give
+    motion: Floats = field(init=False)  # velocity, acceleration: what they take
+
+    def __post_init__(self) -> None:
+        cells = np.rint((self.upper - self.lower) / self.dx).astype(int)
+        if (cells < 1).any() or not np.allclose(cells * self.dx, self.upper - self.lower):
+            raise ValueError(f"the domain {self.lower} to {self.upper} is not a whole number of cells of side {self.dx}")
+        self.nx, self.ny = (int(c) + 1 + 2 * PAD for c in cells)
+        self.origin = self.lower - PAD * self.dx
+        self.mass = np.zeros(self.nx * self.ny)
+        self.given = np.zeros((self.nx * self.ny, 4))
+        self.motion = np.zeros((self.nx * self.ny, 4))
+
+    momentum = property(lambda self: self.given[:, :2])
+    force = property(lambda self: self.given[:, 2:])
+    velocity = property(lambda self: self.motion[:, :2])
+    acceleration = property(lambda self: self.motion[:, 2:])
+
+    @property
+    def nodes(self) -> Floats:
+        """Places of the nodes, (n, 2)."""
+        i, j = np.divmod(np.arange(self.nx * self.ny), self.ny)
+        return self.origin + self.dx * np.stack([i, j], axis=1)
+
+    def cell(self, x: Floats) -> Ints:
+        """Cell (column, row) that holds a place, counted from the domain's lower corner; x (..., 2) -> (..., 2)."""
+        cells: Ints = np.floor((x - self.lower) / self.dx).astype(np.int64)
+        return cells
+
+
+@dataclass
+class Particles:
+    """State of P particles. Rows are kept in an order that suits the grid; `id` (P,) is the row in the initial layout.
+
+    X, x, v, b (P,2): reference place, place, velocity, body force per mass; F (P,2,2); sigma (P,4): Cauchy stress
+    xx, yy, zz, xy, tension positive; m, V0 (P,): mass, initial volume; r0 (P,2,2): initial half side vectors of the
+    domain, one a row; carried (P,C): numbers of the caller that travel with their particle.
+    """
+
+    X: Floats
+    m: Floats
+    V0: Floats
+    r0: Floats
+    x: Floats = field(init=False)
+    v: Floats = field(init=False)
+    b: Floats = field(init=False)
+    F: Floats = field(init=False)
+    sigma: Floats = field(init=False)
+    carried: Floats = field(init=False)
+    id: Ints = field(init=False)
+
+    def __post_init__(self) -> None:
+        count = len(self.X)
+        self.x, self.v, self.b = self.X.copy(), np.zeros((count, 2)), np.zeros((count, 2))
+        self.F, self.sigma = np.tile(np.eye(2), (count, 1, 1)), np.zeros((count, 4))
+        self.carried, self.id = np.zeros((count, 0)), np.arange(count)
+
+    def __len__(self) -> int:
+        return len(self.X)
+
+    def reorder(self, order: Ints) -> None:
+        """Permute the rows of every array."""
+        for item in fields(self):
+            setattr(self, item.name, np.ascontiguousarray(getattr(self, item.name)[order]))
+
+    def in_initial_order(self, name: str) -> Any:
+        """The array `name` with its rows as in the initial layout."""
+        array = np.empty_like(getattr(self, name))
+        array[self.id] = getattr(self, name)
+        return array
+
+
+def fill_rectangle(grid: Grid, ppc: int, rho0: float) -> Particles:
+    """Regular layout of `ppc` particles in each cell of the domain; square domains that tile it, column by column.
+
+    Raises ValueError where `ppc` is no square number.
+    """
+    side = isqrt(max(ppc, 0))
+    if side < 1 or side * side != ppc:
+        raise ValueError(f"{ppc} particles per cell is no square number; choose 1, 4, 9, 16, ...")
+    step = grid.dx / side
+    counts = np.rint((grid.upper - grid.lower) / step).astype(int)
+    axes = [grid.lower[a] + step * (np.arange(counts[a]) + 0.5) for a in (0, 1)]
+    X = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
+    V0 = np.full(len(X), step * step)
+    return Particles(X=X, m=rho0 * V0, V0=V0, r0=np.tile(0.5 * step * np.eye(2), (len(X), 1, 1)))

@@ -1,0 +1,67 @@
+"""The contract between bases and transfers: one table of weights for a block of particles, one signature to fill it.
+
+The table of a basis with K neighbours a particle, for a block of BLOCK particles, is two flat arrays:
+
+    node[k*B + b]              neighbour k of particle b, an index of grid arrays
+    table[k*B + b]             N, its shape value
+    table[(K + k)*B + b]       dN/dx
+    table[(2*K + k)*B + b]     dN/dy
+
+A fill sees the arrays of its block alone, flat: x[2*b + axis], F[4*b + 2*row + column], r0[4*b + 2*side + axis]. Both
+layouts are there for the compiler: with fixed distances between the streams, and as few arrays as this, it works on
+eight particles at once (five times faster than a table [b, k]). So, in a fill: no branch, no division but the one
+needed, floor() for the cell.
+
+A fill returns False, and its table is not used, if a neighbour lies outside `box` = (x0, x1, y0, y1), in cells from the
+grid's origin. Comparisons are written so that a NaN lies outside.
+"""
+
+from collections.abc import Callable
+from typing import ClassVar, Protocol
+
+import numpy as np
+
+from solver._jit import BLOCK, F1, I1, f8, flag, function_type, i8, kernel
+
+#              x   F   r0  ox  oy 1/dx ny  x0  x1  y0  y1 table node
+FILL = flag(F1, F1, F1, f8, f8, f8, i8, f8, f8, f8, f8, F1, I1)
+Fill = function_type(FILL)
+
+
+class Basis(Protocol):
+    """A basis is data plus one kernel; its file in solver/basis is its name."""
+
+    support: ClassVar[int]  # K
+    order: ClassVar[float]  # expected order of the displacement; source in the docstring
+    fill: ClassVar[Callable[..., bool]]  # a kernel of signature FILL
+
+
+@kernel(inline=True)
+def bilinear(k, K, b, x, y, weight, gx, gy, ny, table, node):  # type: ignore[no-untyped-def]
+    """Four nodes k ... k+3 around the point (x, y), in cells: hat function S times weight, and S times (gx, gy)."""
+    i = np.floor(x)
+    j = np.floor(y)
+    right = x - i
+    above = y - j
+    left = 1.0 - right
+    below = 1.0 - above
+    first = np.int64(i) * ny + np.int64(j)
+    entry(k, K, b, first, left * below, weight, gx, gy, table, node)
+    entry(k + 1, K, b, first + 1, left * above, weight, gx, gy, table, node)
+    entry(k + 2, K, b, first + ny, right * below, weight, gx, gy, table, node)
+    entry(k + 3, K, b, first + ny + 1, right * above, weight, gx, gy, table, node)
+
+
+@kernel(inline=True)
+def entry(k, K, b, number, S, weight, gx, gy, table, node):  # type: ignore[no-untyped-def]
+    """One row of the table."""
+    node[k * BLOCK + b] = number
+    table[k * BLOCK + b] = weight * S
+    table[(K + k) * BLOCK + b] = gx * S
+    table[(2 * K + k) * BLOCK + b] = gy * S
+
+
+@kernel(inline=True)
+def outside(x0, x1, y0, y1, left, right, below, above):  # type: ignore[no-untyped-def]
+    """How many of the four sides of the box are passed; a NaN passes each."""
+    return int(not (left >= x0)) + int(not (right < x1)) + int(not (below >= y0)) + int(not (above < y1))
