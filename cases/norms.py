@@ -18,7 +18,7 @@ from numba import prange
 
 from cases.study import QUANTITIES
 from mms.exact import ROOM, Exact
-from solver._jit import BLOCK, F1, F2, F3, f8, kernel, nothing
+from solver._jit import BLOCK, F1, F2, F3, kernel, nothing
 from solver.state import Floats, Particles
 
 CHUNK = 128 * BLOCK  # particles of one partial sum; fixed, so that the sums have one order for any number of threads
@@ -28,7 +28,7 @@ COMPARE = nothing(Exact, F2, F1, F2, F2, F2, F3, F2, F1, F2, F2)
 
 
 @kernel(inline=True)
-def tally(lanes, q, b, weight, square):  # type: ignore[no-untyped-def]
+def tally(lanes, q, b, weight, square):
     """Add one squared error of quantity q to the sums of lane b."""
     lanes[q * BLOCK + b] += weight * square
     largest = lanes[(4 + q) * BLOCK + b]
@@ -36,7 +36,7 @@ def tally(lanes, q, b, weight, square):  # type: ignore[no-untyped-def]
 
 
 @kernel(nothing(F1, F1, F1, F1, F1, F1, F1, F1, F1))
-def tally_block(out, X, x, v, F, sigma, V0, b, lanes):  # type: ignore[no-untyped-def]
+def tally_block(out, X, x, v, F, sigma, V0, b, lanes):
     """Squared errors of a block, all arrays flat; short loops over few arrays, so that the compiler vectorises each."""
     n = V0.shape[0]
     for i in range(n):
@@ -65,8 +65,8 @@ def tally_block(out, X, x, v, F, sigma, V0, b, lanes):  # type: ignore[no-untype
 
 
 @kernel(COMPARE, parallel=True)
-def compare(exact, carried, scalars, X, x, v, F, sigma, V0, b, shares):  # type: ignore[no-untyped-def]
-    """Write the body force b at the particles, and for each chunk the sums of squared errors, into shares (chunks, 8)."""
+def compare(exact, carried, scalars, X, x, v, F, sigma, V0, b, shares):
+    """Write the body force to b, and the sums of squared errors of each chunk to shares (chunks, 8)."""
     P = X.shape[0]
     width = carried.shape[1]
     columns = carried.reshape(-1)

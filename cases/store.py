@@ -1,8 +1,8 @@
 """The run store: one folder a study, one Result a run, written atomically; what is stored is not run again.
 
-    DIR/study.json           the Study
-    DIR/runs/<digest>.json   a Result
-    DIR/runs/<digest>.npz    the particles at its last step: X, x (P,2), F (P,2,2), r0 (P,2,2), error_u (P,), float32
+DIR/study.json           the Study
+DIR/runs/<digest>.json   a Result
+DIR/runs/<digest>.npz    the particles at its last step: X, x (P,2), F (P,2,2), r0 (P,2,2), error_u (P,), float32
 """
 
 import json
@@ -32,11 +32,15 @@ class Store:
         self.runs = folder / "runs"
 
     def create(self, study: Study) -> None:
-        """Make the folder and write study.json; Results already there stay."""
+        """Make the folder and write study.json; Results already there stay, a broken study.json is not written over."""
         try:
             self.runs.mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise StoreError(f"cannot make the study folder {self.folder}: {error.strerror}; give a writable one with --out") from error
+            raise StoreError(
+                f"cannot make the study folder {self.folder}: {error.strerror}; give a writable one with --out"
+            ) from error
+        if (self.folder / "study.json").exists():
+            self.study()
         self._write(self.folder / "study.json", json.dumps(asdict(study), indent=1).encode())
 
     def study(self) -> Study:
@@ -69,19 +73,25 @@ class Store:
             with np.load(path, allow_pickle=False) as stored:
                 return {name: stored[name] for name in stored.files}
         except (OSError, ValueError) as error:
-            raise StoreError(f"cannot read {path}: {error}; delete it and its .json file to run that run again") from error
+            raise StoreError(
+                f"cannot read {path}: {error}; delete it and its .json file to run that run again"
+            ) from error
 
     @staticmethod
     def _read(path: Path, adapter: TypeAdapter[Any]) -> Any:
         try:
             data = json.loads(path.read_bytes())
             if data.get("format") != FORMAT:
-                raise StoreError(f"{path} has format {data.get('format')}, this version reads {FORMAT}; use another --out folder")
+                raise StoreError(
+                    f"{path} has format {data.get('format')}, this version reads {FORMAT}; use another --out folder"
+                )
             return adapter.validate_python(data)
         except FileNotFoundError as error:
             raise StoreError(f"{path.parent} is no study folder: it holds no {path.name}") from error
         except (OSError, ValueError, AttributeError, ValidationError) as error:
-            raise StoreError(f"{path} is broken and was left as it is; move it away, and what it held is made again") from error
+            raise StoreError(
+                f"{path} is broken and was left as it is; move it away, and what it held is made again"
+            ) from error
 
     @staticmethod
     def _write(path: Path, data: bytes) -> None:

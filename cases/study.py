@@ -1,4 +1,4 @@
-"""What is run and what is expected of it: Run, Result and Study, plain data that the store writes and the report reads."""
+"""What is run and what is expected of it: Run, Result and Study, data that the store writes and the report reads."""
 
 import hashlib
 import json
@@ -18,7 +18,12 @@ Status = Literal["finished", "failed"]
 @cache
 def sources_digest() -> str:
     """Hash of every source that a stored number depends on: the solver, the derivation, the norms and the cases."""
-    files = [*TOP.glob("solver/**/*.py"), *TOP.glob("mms/**/*.py"), *TOP.glob("cases/library/*.py"), TOP / "cases/norms.py"]
+    files = [
+        *TOP.glob("solver/**/*.py"),
+        *TOP.glob("mms/**/*.py"),
+        *TOP.glob("cases/library/*.py"),
+        TOP / "cases/norms.py",
+    ]
     return digest(files)
 
 

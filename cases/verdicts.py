@@ -1,4 +1,4 @@
-"""From stored Results to verdicts: which levels belong to which declared quantity, and what the order rule says of them."""
+"""From Results to verdicts: which levels belong to which declared quantity, and what the order rule says of them."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -57,12 +57,15 @@ def _quantity(declared: Declared, runs: Sequence[Run], results: Mapping[str, Res
         results[r.digest].errors[declared.quantity][declared.norm]
         for r in runs
         if series
-        and (r.method, r.solution, r.ppc, r.cells) == (declared.method, declared.solution, declared.ppc, series[-1].cells)
+        and (r.method, r.solution, r.ppc, r.cells)
+        == (declared.method, declared.solution, declared.ppc, series[-1].cells)
         and r.courant < series[-1].courant
         and r.digest in results
         and results[r.digest].status == "finished"
     ]
-    return Quantity(levels, declared.expectation or NOTHING_EXPECTED, max(floors, default=0.0), half[0] if half else None)
+    return Quantity(
+        levels, declared.expectation or NOTHING_EXPECTED, max(floors, default=0.0), half[0] if half else None
+    )
 
 
 def _error(declared: Declared, result: Result | None) -> tuple[tuple[float, ...], str]:

@@ -71,7 +71,7 @@ def compile_exact(fields: Fields) -> ExactKernel:
     return ExactKernel(_load(source), columns_of, scalars_at)
 
 
-class Printer(PythonCodePrinter):  # type: ignore[misc]
+class Printer(PythonCodePrinter):
     """Python with small whole powers as products: Numba makes a loop of x**(-2), and a vectoriser passes loops by."""
 
     def _print_Pow(self, expr: sp.Pow, rational: bool = False) -> str:
@@ -132,7 +132,8 @@ def _load(source: str) -> Any:
         temporary.write_text(source)
         os.replace(temporary, path)
     spec = importlib.util.spec_from_file_location(name, path)
-    assert spec is not None and spec.loader is not None
+    assert spec is not None
+    assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     sys.modules[name] = module  # Numba's cache looks a kernel's module up by name when it is loaded again
     spec.loader.exec_module(module)

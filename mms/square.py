@@ -8,7 +8,7 @@ import numpy as np
 from solver.state import Floats
 
 if TYPE_CHECKING:
-    import sympy as sp
+    pass
 
 
 @dataclass(frozen=True)

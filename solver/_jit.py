@@ -8,14 +8,14 @@ import os
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import numba
 from numba import boolean, float64, int64, types, void
 
 from solver.sources import TOP, digest
 
-Function = TypeVar("Function", bound=Callable[..., Any])
+Function = Callable[..., Any]
 
 BLOCK = 32  # particles in a weights table: 16 neighbours of 32 particles are 16 kB, half of a level-1 cache
 
@@ -39,21 +39,20 @@ def cache_folder() -> Path:
 
 
 CACHE = cache_folder()
-numba.config.CACHE_DIR = str(CACHE)
+settings: Any = numba.config
+settings.CACHE_DIR = str(CACHE)
 # The vectoriser for straight-line code is off by default in Numba. It changes no operation and no order of operations,
 # and the transfers gain a quarter.
-numba.config.SLP_VECTORIZE = 1
+settings.SLP_VECTORIZE = 1
 
 
 def kernel(signature: Any = None, *, parallel: bool = False, inline: bool = False) -> Callable[[Function], Function]:
-    """Compile a function at import for one explicit signature; without one it is a helper, compiled into its callers."""
+    """Compile a function at import for one explicit signature; with `inline`, make it a helper of other kernels."""
 
     def compile_function(function: Function) -> Function:
         if inline:
-            helper: Function = numba.njit(inline="always", error_model="numpy")(function)
-            return helper
-        compiled: Function = numba.njit(signature, parallel=parallel, error_model="numpy", cache=True)(function)
-        return compiled
+            return numba.njit(inline="always", error_model="numpy")(function)
+        return numba.njit(signature, parallel=parallel, error_model="numpy", cache=True)(function)
 
     return compile_function
 
@@ -65,4 +64,4 @@ def function_type(signature: Any) -> Any:
 
 def use_threads(threads: int) -> None:
     """Threads of the parallel kernels from now on; more than the machine has are no use and not taken."""
-    numba.set_num_threads(max(1, min(threads, numba.config.NUMBA_NUM_THREADS)))
+    numba.set_num_threads(max(1, min(threads, settings.NUMBA_NUM_THREADS)))

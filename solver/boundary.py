@@ -37,7 +37,7 @@ def box(grid: Grid, kind: Kind) -> Walls:
 
 
 @kernel(nothing(F1, F2, F2, flag[:, ::1], F2, f8, f8, i8), parallel=True)
-def solve(mass, given, motion, held, value, dt, cutoff, ny):  # type: ignore[no-untyped-def]
+def solve(mass, given, motion, held, value, dt, cutoff, ny):
     """Velocity at the end of the step and acceleration at every node; m a = f, or what the wall makes of it."""
     for column in prange(mass.shape[0] // ny):
         for i in range(column * ny, (column + 1) * ny):

@@ -1,4 +1,4 @@
-"""Grid and Particles: structures of arrays, float64, C order. Plane strain; lengths, masses and stresses in one system."""
+"""Grid and Particles: structures of arrays, float64, C order; plane strain, one system of units."""
 
 from dataclasses import dataclass, field, fields
 from math import isqrt
@@ -35,7 +35,9 @@ class Grid:
     def __post_init__(self) -> None:
         cells = np.rint((self.upper - self.lower) / self.dx).astype(int)
         if (cells < 1).any() or not np.allclose(cells * self.dx, self.upper - self.lower):
-            raise ValueError(f"the domain {self.lower} to {self.upper} is not a whole number of cells of side {self.dx}")
+            raise ValueError(
+                f"the domain {self.lower} to {self.upper} is not a whole number of cells of side {self.dx}"
+            )
         self.nx, self.ny = (int(c) + 1 + 2 * PAD for c in cells)
         self.origin = self.lower - PAD * self.dx
         self.mass = np.zeros(self.nx * self.ny)

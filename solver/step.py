@@ -31,7 +31,7 @@ class Material(Protocol):
         """Speed of the fastest wave in the undeformed state."""
 
 
-class RunFailed(Exception):
+class RunFailed(Exception):  # noqa: N818 - a failed run is a result, not an error
     """The run cannot go on. `particle`: its row in the initial layout, -1 if none; `cell`: where it is."""
 
     def __init__(self, reason: str, step: int = 0, particle: int = -1, cell: tuple[int, int] | None = None) -> None:
@@ -88,7 +88,7 @@ def check_time_step(model: Model) -> None:
 
 
 def advance(model: Model, load: Load) -> None:
-    """One step. `load` writes particles.b at the time it is given. Raises RunFailed; the particles then are as they fell."""
+    """One step; `load` writes particles.b at the time it is given. Raises RunFailed."""
     load(model.particles, model.time)
     particles_to_grid(model)
     equation_of_motion(model)

@@ -16,7 +16,7 @@ CHUNK = 128 * BLOCK  # particles a thread takes at a time on the way back
 
 
 @kernel(inline=True)
-def scatter(K, lo, hi, v, F, sigma, m, V0, b, table, node, mass, given):  # type: ignore[no-untyped-def]
+def scatter(K, lo, hi, v, F, sigma, m, V0, b, table, node, mass, given):
     """Mass, momentum and force of particles lo ... hi-1 to their nodes: f_i = -V sigma dN_i + m b N_i, V = J V0."""
     dNx = np.uint64(K * BLOCK)
     dNy = np.uint64(2 * K * BLOCK)
@@ -51,10 +51,10 @@ P2G = nothing(Fill, i8, I1, i8, F2, F2, F3, F2, F1, F1, F2, F3, F1, f8, i8, i8, 
 
 
 @kernel(P2G, parallel=True)
-def p2g(fill, K, start, width, x, v, F, sigma, m, V0, b, r0, origin, inv_dx, nx, ny, mass, given, strayed):  # type: ignore[no-untyped-def]
+def p2g(fill, K, start, width, x, v, F, sigma, m, V0, b, r0, origin, inv_dx, nx, ny, mass, given, strayed):
     """Sums of all particles on the grid.
 
-    `start` (S+1,) bounds the particles of each slab. `strayed` (S,) is -1, or the first particle of a block of which one
+    `start` (S+1,) bounds the particles of each slab. `strayed` (S,) is -1, or the first particle of a block that
     reaches out of its slab's box; the sums are then incomplete and not to be used.
     """
     slabs = start.shape[0] - 1
@@ -84,11 +84,11 @@ def p2g(fill, K, start, width, x, v, F, sigma, m, V0, b, r0, origin, inv_dx, nx,
 
 
 @kernel(inline=True)
-def gather(K, lo, hi, x, v, F, motion, dt, flip, table, node):  # type: ignore[no-untyped-def]
+def gather(K, lo, hi, x, v, F, motion, dt, flip, table, node):
     """New velocity, place and F of particles lo ... hi-1. Returns the first with det F <= 0 or not finite, else -1."""
     dNx = np.uint64(K * BLOCK)
     dNy = np.uint64(2 * K * BLOCK)
-    lost = -1
+    lost = np.int64(-1)
     for q in range(np.uint64(hi - lo)):
         p = np.uint64(lo) + q
         vx = vy = ax = ay = 0.0
@@ -131,7 +131,7 @@ G2P = nothing(Fill, i8, F2, F2, F3, F3, F1, f8, i8, i8, F2, f8, f8, I1)
 
 
 @kernel(G2P, parallel=True)
-def g2p(fill, K, x, v, F, r0, origin, inv_dx, nx, ny, motion, dt, flip, lost):  # type: ignore[no-untyped-def]
+def g2p(fill, K, x, v, F, r0, origin, inv_dx, nx, ny, motion, dt, flip, lost):
     """FLIP velocity with a share (1 - flip) of PIC, place, and F <- (I + dt L) F (paper eq. (4)) of all particles.
 
     `lost` (chunks,) is -1, or the first particle of the chunk that has lost its det F.

@@ -37,7 +37,7 @@ class Basis(Protocol):
 
 
 @kernel(inline=True)
-def bilinear(k, K, b, x, y, weight, gx, gy, ny, table, node):  # type: ignore[no-untyped-def]
+def bilinear(k, K, b, x, y, weight, gx, gy, ny, table, node):
     """Four nodes k ... k+3 around the point (x, y), in cells: hat function S times weight, and S times (gx, gy)."""
     i = np.floor(x)
     j = np.floor(y)
@@ -53,7 +53,7 @@ def bilinear(k, K, b, x, y, weight, gx, gy, ny, table, node):  # type: ignore[no
 
 
 @kernel(inline=True)
-def entry(k, K, b, number, S, weight, gx, gy, table, node):  # type: ignore[no-untyped-def]
+def entry(k, K, b, number, S, weight, gx, gy, table, node):
     """One row of the table."""
     node[k * BLOCK + b] = number
     table[k * BLOCK + b] = weight * S
@@ -62,6 +62,6 @@ def entry(k, K, b, number, S, weight, gx, gy, table, node):  # type: ignore[no-u
 
 
 @kernel(inline=True)
-def outside(x0, x1, y0, y1, left, right, below, above):  # type: ignore[no-untyped-def]
+def outside(x0, x1, y0, y1, left, right, below, above):
     """How many of the four sides of the box are passed; a NaN passes each."""
     return int(not (left >= x0)) + int(not (right < x1)) + int(not (below >= y0)) + int(not (above < y1))

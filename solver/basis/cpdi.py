@@ -13,7 +13,7 @@ from solver.weights import FILL, bilinear, outside
 
 
 @kernel(FILL)
-def fill(x, F, r0, ox, oy, inv_dx, ny, x0, x1, y0, y1, table, node):  # type: ignore[no-untyped-def]
+def fill(x, F, r0, ox, oy, inv_dx, ny, x0, x1, y0, y1, table, node):
     """N and dN of the four nodes around each corner, sixteen in all, some of them the same; see solver/weights.py."""
     bad = 0
     for b in range(x.shape[0] // 2):

@@ -15,7 +15,7 @@ B = BLOCK
 
 
 @kernel(FILL)
-def fill(x, F, r0, ox, oy, inv_dx, ny, x0, x1, y0, y1, table, node):  # type: ignore[no-untyped-def]
+def fill(x, F, r0, ox, oy, inv_dx, ny, x0, x1, y0, y1, table, node):
     """N and dN of the four nodes of the cell that holds the particle; see solver/weights.py."""
     bad = 0
     for b in range(x.shape[0] // 2):

@@ -17,7 +17,7 @@ from solver.state import Particles
 
 
 @kernel(nothing(F3, F2, f8, f8), parallel=True)
-def stress(F, sigma, lam, mu):  # type: ignore[no-untyped-def]
+def stress(F, sigma, lam, mu):
     """Stress (P,4) of F (P,2,2)."""
     for p in prange(F.shape[0]):
         exx = F[p, 0, 0] - 1.0

@@ -1,0 +1,42 @@
+"""What is expected of each method on each solution, registered with its source before anything runs.
+
+Keys are plain names: an expectation holds for the default parameters of solution and material, the constants of the
+magnitude gate with them. Judged is u in rms with 4 and 9 particles per cell; all else is shown.
+"""
+
+from dataclasses import replace
+
+from cases.order import Expectation
+
+JUDGED = ("u", "rms")
+JUDGED_PPC = (4, 9)
+
+DIVERGES = "particles cross cells: Steffen, Kirby & Berzins 2008; PHYSICS 6.1"
+SECOND = "Sadeghirad, Brannon & Burghardt 2011; two independent codes, VERIFICATION 1"
+
+EXPECTED: dict[tuple[str, str], Expectation] = {
+    ("cpdi", "axis_aligned"): Expectation(2.0, source=SECOND),
+    ("mpm", "axis_aligned"): Expectation(None, source=DIVERGES),
+    ("cpdi", "clamped_shear"): Expectation(2.0, source="1.95 to 2.09 in 2-D, VERIFICATION 3"),
+    ("mpm", "clamped_shear"): Expectation(None, source=DIVERGES),
+}
+
+# recorded errors of u in rms: (method, solution, ppc) -> (h, error), VERIFICATION 1
+RECORDED = {
+    ("cpdi", "axis_aligned", 4): (1 / 128, 1.127e-5),
+    ("cpdi", "axis_aligned", 9): (1 / 128, 1.066e-5),
+}
+
+
+def expected(method: str, solution: str, material: str, ppc: int, quantity: str, norm: str) -> Expectation | None:
+    """The registered expectation; None where there is none, so that the quantity is only shown.
+
+    `solution` and `material` are specifications; parameters of one's own have no registered expectation.
+    """
+    if (quantity, norm) != JUDGED or ppc not in JUDGED_PPC or material != "neo_hookean":
+        return None
+    expectation = EXPECTED.get((method, solution))
+    recorded = RECORDED.get((method, solution, ppc))
+    if expectation and recorded:
+        return replace(expectation, constant_h=recorded[0], constant=recorded[1])
+    return expectation

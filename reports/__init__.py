@@ -1,0 +1,1 @@
+"""Stored results -> tables, figures and one HTML page; never runs a solver."""

@@ -1,0 +1,66 @@
+"""Local orders: the order between neighbouring cell sizes, which shows whether the order has settled."""
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from cases.fit import local_orders
+from reports import style, words
+from reports.figures.convergence import methods
+from reports.stored import Record, Series
+
+
+def orders(record: Record, series: Series, quantity: str, norm: str) -> list[tuple[int, int, float]]:
+    """(cells, cells, order) for each pair of neighbouring finished runs, coarse to fine; errors of zero have none."""
+    found = [(run.cells, error) for run, error in record.errors(series, quantity, norm) if error > 0]
+    if len(found) < 2:
+        return []
+    cells, error = np.array([n for n, _ in found]), np.array([e for _, e in found])
+    steps = local_orders(1 / cells, error).tolist()
+    return [(int(a), int(b), p) for a, b, p in zip(cells[:-1], cells[1:], steps, strict=True)]
+
+
+def local_order_figure(record: Record, solution: str, quantity: str = "u", norm: str = "rms") -> Figure:
+    """Figure of the local orders of one solution with the registered band."""
+    series = [s for s in record.series if s.first.solution == solution]
+    with rc_context(style.RC):
+        figure = Figure(figsize=(5.2, 4.8), layout="constrained")
+        axes = figure.subplots()
+        cells = sorted({run.cells for s in series for run in s.runs})
+        handles = [_draw(axes, record, s, cells, quantity, norm) for s in series]
+        _band(axes, record, solution, quantity, norm)
+        axes.axhline(0, color=style.INK, linewidth=0.9)
+        axes.set_xticks(range(len(cells) - 1), [f"1/{a} →\n1/{b}" for a, b in pairwise(cells)])
+        axes.set_xlim(-0.5, max(len(cells) - 1.5, 0.5))
+        axes.set(xlabel="from cell size to cell size", ylabel=f"local order of {words.quantity(quantity)}, {norm}")
+        figure.legend(handles=[h for h in handles if h], loc="outside lower center", ncols=2, handlelength=2.6)
+    return figure
+
+
+def _draw(axes: Axes, record: Record, series: Series, cells: Sequence[int], quantity: str, norm: str) -> Line2D | None:
+    """A point for each pair of cell sizes, and the entry in the legend; none where there is no pair."""
+    found = orders(record, series, quantity, norm)
+    if not found:
+        return None
+    drawn = style.look(methods(record), series.first.method, series.first.ppc)
+    places = [(cells.index(a) + cells.index(b) - 1) / 2 for a, b, _ in found]
+    axes.plot(places, [p for *_, p in found], **drawn.plot)
+    return Line2D([], [], label=words.series(series.first), **drawn.plot)
+
+
+def _band(axes: Axes, record: Record, solution: str, quantity: str, norm: str) -> None:
+    """The band that was registered for the first judged order."""
+    for d in record.study.declared:
+        e = d.expectation
+        if e and e.order is not None and d.judged and (d.solution, d.quantity, d.norm) == (solution, quantity, norm):
+            axes.axhspan(e.order - e.below, e.order + e.above, color="#009E73", alpha=0.16, linewidth=0)
+            axes.annotate(
+                "registered band", (0.02, e.order + e.above), (0, 3), color=style.GREY, fontsize=9.5,
+                xycoords=("axes fraction", "data"), textcoords="offset points",
+            )  # fmt: skip
+            return

@@ -1,0 +1,135 @@
+"""A study folder -> report.html, figures/ and tables/; from what is stored alone, and the same bytes each time."""
+
+import base64
+import os
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from matplotlib.figure import Figure
+
+from cases.store import StoreError
+from cases.study import QUANTITIES, Run
+from reports import show, show_runs, style, tables, words
+from reports.blind_spots import blind_spots
+from reports.cards import cards, summary
+from reports.figures.convergence import convergence, methods
+from reports.figures.error_field import CELLS, PPC, choose, error_field
+from reports.figures.local_orders import local_order_figure
+from reports.stored import Record, read
+
+TEMPLATES = Path(__file__).resolve().parent / "templates"
+
+
+@dataclass(frozen=True)
+class Image:
+    """A figure inside the page: its SVG as data, and what it shows in words."""
+
+    name: str
+    data: str
+    alt: str
+    width: int
+    height: int
+
+
+def render(folder: Path, cells: int = CELLS, ppc: int = PPC) -> Path:
+    """Write report.html, figures/*.svg|pdf|png and tables/*.csv into a study folder; the path of the page.
+
+    The error field is that of the run of each method nearest to `cells` a side and `ppc` particles per cell.
+
+    Raises StoreError if the folder is no study folder, is broken, or cannot be written.
+    """
+    record = read(folder)
+    try:
+        for name in ("figures", "tables"):
+            (folder / name).mkdir(exist_ok=True)
+        tables.write(record, folder / "tables")
+        text = _page(record, folder / "figures", (cells, ppc))
+        return _write(folder / "report.html", text)
+    except OSError as error:
+        raise StoreError(f"cannot write the report into {folder}: {error.strerror}; the results are kept") from error
+
+
+def _page(record: Record, folder: Path, field: tuple[int, int]) -> str:
+    """The HTML text; figures are drawn on the way."""
+    environment = Environment(loader=FileSystemLoader(TEMPLATES), undefined=StrictUndefined, autoescape=True)
+    environment.trim_blocks = environment.lstrip_blocks = True
+    return environment.get_template("report.html.j2").render(
+        record=record,
+        study=record.study,
+        summary=summary(record),
+        cards=cards(record),
+        meaning=words.MEANING,
+        sections=[_solution(record, solution, folder, field) for solution in record.solutions],
+        show=show,
+        show_runs=show_runs,
+        quantities=QUANTITIES,
+        words=words,
+    )
+
+
+def _solution(record: Record, solution: str, folder: Path, field: tuple[int, int]) -> dict[str, object]:
+    """Figures and blind spots of one solution; figure files carry its name where the study has several."""
+    end = "_" + re.sub(r"[^A-Za-z0-9]+", "_", solution) if len(record.solutions) > 1 else ""
+    add = _adder(folder, end)
+    drawn = convergence(record, solution)
+    add("figure1", drawn["figure1"], "")
+    chosen = [choose(record, method, solution, *field) for method in methods(record)]
+    fields = [_field(record, run, add) for run in chosen if run]
+    return {
+        "name": solution,
+        "panels": [
+            add(f"figure1_{norm}", drawn[f"figure1_{norm}"], _alt(record, solution, norm))
+            for norm in ("rms", "printed")
+        ],
+        "orders": add(
+            "local_orders",
+            local_order_figure(record, solution),
+            "Local orders of u in rms; the table below holds the numbers.",
+        ),
+        "fields": [image for image in fields if image],
+        "blind": blind_spots(solution),
+    }
+
+
+def _adder(folder: Path, end: str) -> Callable[[str, Figure, str], Image]:
+    """A function that saves a figure under a name and gives it as an Image; its halves are saved as SVG alone."""
+
+    def add(name: str, figure: Figure, alt: str) -> Image:
+        svg = style.save(figure, folder, name + end, ("svg",) if name.startswith("figure1_") else ("svg", "pdf", "png"))
+        width, height = (round(96 * inches) for inches in figure.get_size_inches())
+        return Image(name + end, "data:image/svg+xml;base64," + base64.b64encode(svg).decode(), alt, width, height)
+
+    return add
+
+
+def _field(record: Record, run: Run, add: Callable[[str, Figure, str], Image]) -> Image | None:
+    """The error field of one run; None where its particles are not stored."""
+    arrays = record.arrays(run)
+    if not {"x", "F", "r0", "error_u"} <= arrays.keys():
+        return None
+    most = words.sci(float(arrays["error_u"].max()))
+    grid = f"{run.cells} by {run.cells} cells"
+    alt = f"Size of the error of u at the last step, {words.series(run)}, {grid}: at most {most}."
+    return add(f"error_field_{run.method}", error_field(run, arrays), alt)
+
+
+def _alt(record: Record, solution: str, norm: str) -> str:
+    """A panel of Figure 1 in words: the ends of each series and its failed runs."""
+    parts = [f"Error of u in {norm} against cell size, both axes logarithmic."]
+    for s in (s for s in record.series if s.first.solution == solution):
+        found, lost = record.errors(s, "u", norm), record.failed(s)
+        ends = [f"{words.sci(e)} at {words.cell_size(run.cells)}" for run, e in (found[:1] + found[1:][-1:])]
+        text = f"{words.series(s.first)}: {' to '.join(ends) or 'no error'}"
+        parts.append(text + (f", {words.count(len(lost), 'run')} failed." if lost else "."))
+    return " ".join(parts)
+
+
+def _write(path: Path, text: str) -> Path:
+    """The whole page or the old one: a reader never sees half of it."""
+    temporary = path.with_name(f".{path.name}.{os.getpid()}")
+    temporary.write_bytes(text.encode())
+    os.replace(temporary, path)
+    return path

@@ -1,0 +1,105 @@
+"""What a study folder holds, read once: the Study, its Results, and what the order rule says of them."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from cases.store import Arrays, Store
+from cases.study import Declared, Result, Run, Study
+from cases.verdicts import Finding, findings, refinement
+
+
+@dataclass(frozen=True)
+class Series:
+    """The refinement of one method, solution and particle count at the Courant number of the study, coarse to fine."""
+
+    runs: tuple[Run, ...]
+
+    @property
+    def first(self) -> Run:
+        """The coarsest run; it names the method, solution and particle count of all."""
+        return self.runs[0]
+
+
+@dataclass(frozen=True)
+class Record:
+    """A study as stored. `results` by the digest that the study's runs have now; runs not done are not in it.
+
+    `earlier` says that all results come from other sources than those installed: their numbers stand, but a new run of
+    the study would compute them again.
+    """
+
+    store: Store
+    study: Study
+    results: dict[str, Result]
+    earlier: bool
+
+    @cached_property
+    def findings(self) -> list[Finding]:
+        """Findings in the order of the declarations."""
+        return findings(self.study, self.results)
+
+    @cached_property
+    def series(self) -> list[Series]:
+        """One a method, solution and particle count; methods as declared by the study, fewest particles first."""
+        heads = {(r.method, r.solution, r.ppc) for r in self.study.runs}
+        places = {r.method: i for i, r in reversed(list(enumerate(self.study.runs)))}
+        ordered = sorted(heads, key=lambda head: (head[1], places[head[0]], head[2]))
+        shown = [Declared(*head, "u", "rms", judged=False, expectation=None) for head in ordered]
+        return [Series(tuple(refinement(d, self.study.runs))) for d in shown]
+
+    @property
+    def solutions(self) -> list[str]:
+        """Each solution of the study once."""
+        return sorted({run.solution for run in self.study.runs})
+
+    @property
+    def missing(self) -> list[Run]:
+        """Runs that the study asks for and that are not stored."""
+        return [run for run in self.study.runs if run.digest not in self.results]
+
+    def result(self, run: Run) -> Result | None:
+        """The stored Result of a run, None if it is still to be done."""
+        return self.results.get(run.digest)
+
+    def error(self, run: Run, quantity: str, norm: str) -> float | None:
+        """An error of a finished run; None if the run failed, is still to be done, or has no such error."""
+        result = self.result(run)
+        if result is None or result.status == "failed":
+            return None
+        return result.errors.get(quantity, {}).get(norm)
+
+    def errors(self, series: Series, quantity: str, norm: str) -> list[tuple[Run, float]]:
+        """The finished runs of a series with their error, coarse to fine."""
+        pairs = [(run, self.error(run, quantity, norm)) for run in series.runs]
+        return [(run, error) for run, error in pairs if error is not None]
+
+    def failed(self, series: Series) -> list[Run]:
+        """The failed runs of a series, coarse to fine."""
+        return [run for run in series.runs if (r := self.result(run)) and r.status == "failed"]
+
+    def arrays(self, run: Run) -> Arrays:
+        """The particles of a stored run at its last step. Raises StoreError if they cannot be read."""
+        return self.store.arrays(self.results[run.digest].digest)
+
+
+def read(folder: Path) -> Record:
+    """The Record of a study folder. Raises StoreError if the folder is none or is broken."""
+    store = Store(folder)
+    study = store.study()
+    exact = {run.digest: result for run in study.runs if (result := store.get(run.digest))}
+    if exact:
+        return Record(store, study, exact, earlier=False)
+    old = {result.run: result for result in _all(store)}
+    found = {run.digest: old[run] for run in study.runs if run in old}
+    return Record(store, study, found, earlier=bool(found))
+
+
+def _all(store: Store) -> Iterator[Result]:
+    """Every stored Result, the last written last: what a report of yesterday's study is made from."""
+    files = sorted(store.runs.glob("*.json"), key=lambda file: (file.stat().st_mtime_ns, file.name))
+    for file in files:
+        result = store.get(file.stem)
+        if result is not None:
+            yield result

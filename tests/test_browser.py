@@ -1,0 +1,115 @@
+"""The page in a real browser: missing images, console errors, horizontal scrolling; and that these checks can fail."""
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import fixtures_study as fixtures
+import pytest
+from selenium import webdriver
+from selenium.webdriver.chrome.service import Service
+
+from reports.render import render
+
+CHROMIUM, DRIVER = Path("/usr/bin/chromium"), Path("/usr/bin/chromedriver")
+WIDTHS = (1280, 360)
+ARGUMENTS = (
+    "--headless=new",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+)
+MISSING = (
+    "return [...document.images].filter(i => !(i.complete && i.naturalWidth > 0)).map(i => i.alt || i.src.slice(0, 60))"
+)
+OVERFLOW = "const d = document.documentElement; return d.scrollWidth - d.clientWidth"
+SMALLEST = "return Math.min(...[...document.images].map(i => i.getBoundingClientRect().width / innerWidth))"
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[webdriver.Chrome]:
+    """Headless Chromium with a profile of its own. Where CI is set, a missing browser is a failure."""
+    absent = [str(path) for path in (CHROMIUM, DRIVER) if not path.exists()]
+    if absent:
+        say = pytest.fail if os.environ.get("CI") else pytest.skip
+        say(f"the report cannot be opened in a browser: {' and '.join(absent)} not installed")
+    options = webdriver.ChromeOptions()
+    options.binary_location = str(CHROMIUM)
+    for argument in (*ARGUMENTS, f"--user-data-dir={tmp_path_factory.mktemp('profile')}"):
+        options.add_argument(argument)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    driver = webdriver.Chrome(options=options, service=Service(str(DRIVER)))
+    yield driver
+    driver.quit()
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The report of a whole study."""
+    with fixtures.sources():
+        return render(fixtures.make(tmp_path_factory.mktemp("study")))
+
+
+@pytest.fixture(scope="module")
+def unfinished(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The report of a study with runs still to be done."""
+    with fixtures.sources():
+        return render(fixtures.make(tmp_path_factory.mktemp("study"), skip=20))
+
+
+def console(browser: webdriver.Chrome) -> list[str]:
+    """What the console said since it was last asked."""
+    return [entry["message"] for entry in browser.get_log("browser")]  # type: ignore[no-untyped-call]  # selenium
+
+
+def look(browser: webdriver.Chrome, page: Path, width: int) -> dict[str, Any]:
+    """What is wrong with a page `width` pixels wide, with all that folds unfolded: empty where nothing is."""
+    metrics = {"width": width, "height": 800, "deviceScaleFactor": 1, "mobile": False}
+    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)  # a window cannot be 360 wide
+    console(browser)  # drops what earlier pages said
+    browser.get(page.as_uri())
+    browser.execute_script("document.querySelectorAll('details').forEach(d => d.open = true)")
+    found = {
+        "missing": browser.execute_script(MISSING),
+        "overflow": max(0, browser.execute_script(OVERFLOW)),
+        "console": console(browser),
+    }
+    return {name: wrong for name, wrong in found.items() if wrong}
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+def test_whole_study(browser: webdriver.Chrome, page: Path, width: int) -> None:
+    assert look(browser, page, width) == {}
+    assert browser.execute_script("return document.images.length") == 5
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+def test_unfinished_study(browser: webdriver.Chrome, unfinished: Path, width: int) -> None:
+    assert look(browser, unfinished, width) == {}
+
+
+def test_figures_take_the_width_of_a_phone(browser: webdriver.Chrome, page: Path) -> None:
+    look(browser, page, 360)
+    assert browser.execute_script(SMALLEST) > 0.8
+
+
+@pytest.mark.parametrize(
+    ("body", "wrong"),
+    [
+        ('<img src="data:image/png;base64,AAAA" alt="broken">', "missing"),
+        ('<div style="width: 2000px">too wide</div>', "overflow"),
+        ("<script>console.error('a fault')</script>", "console"),
+        ("<script>missing_function()</script>", "console"),
+    ],
+)
+@pytest.mark.parametrize("width", WIDTHS)
+def test_the_checks_can_fail(
+    browser: webdriver.Chrome, page: Path, tmp_path: Path, width: int, body: str, wrong: str
+) -> None:
+    spoilt = tmp_path / "report.html"
+    spoilt.write_text(page.read_text().replace("</main>", f"{body}</main>"))
+    assert list(look(browser, spoilt, width)) == [wrong]

@@ -1,0 +1,515 @@
+"""The order rule on sequences whose truth is known: it must not pass what is bad, nor fail what is good.
+
+h = 1/8 to 1/128 and C = 1, so the finest clean error is 6.1e-5: of it a leak of 0.005 h adds 39 %, a floor of 1e-5
+adds 14 %. Scatter multiplies each error by exp(s N(0, 1)).
+"""
+
+import math
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from cases.fit import Array, asymptotic_window, contamination, fit_slope, local_orders
+from cases.order import Expectation, Level, Outcome, Quantity, Verdict, judge, judge_family
+
+PASS, FAIL, INCONCLUSIVE, ERROR = Outcome
+DET = "det F <= 0 at step 143, particle 17"
+SECOND = Expectation(2.0, source="theory")
+DIVERGES = Expectation(None, source="measured")
+DRAWS = 200
+
+CPDI_4 = (3.043e-3, 7.122e-4, 1.800e-4, 4.498e-5, 1.127e-5)  # measured, displacement, rms, 8 to 128 cells
+CPDI_9 = (2.590e-3, 7.502e-4, 1.706e-4, 4.275e-5, 1.066e-5)
+MPM_4 = (4.814e-3, 6.724e-3, 1.432e-2, 2.573e-2)  # the 128-cell run ends with det F <= 0
+MPM_9 = (3.781e-3, 4.280e-3, 9.485e-3, 1.618e-2)
+
+Sequence_ = Callable[[Array], Array]
+
+
+def drift(h: Array) -> Array:
+    """Local orders from 2.0 to 1.5."""
+    steps = np.linspace(2.0, 1.5, len(h) - 1)
+    errors: Array = np.exp2(-np.concatenate([[6.0], 6 + np.cumsum(steps)]))
+    return errors
+
+
+BAD: dict[str, Sequence_] = {
+    "leak 0.02 h": lambda h: h**2 + 0.02 * h,
+    "leak 0.005 h": lambda h: h**2 + 0.005 * h,
+    "floor 1e-5": lambda h: h**2 + 1e-5,
+    "order 1.5": lambda h: h**1.5,
+    "drift 2.0 to 1.5": drift,
+}
+GOOD: dict[str, Sequence_] = {
+    "clean": lambda h: h**2,
+    "pre-asymptotic, 1.42 to 1.85": lambda h: h**2 / (1 + 16 * h),
+    "pre-asymptotic, 1.15 to 1.58": lambda h: h**2 / (1 + 64 * h),
+    "pre-asymptotic, 1.08 to 1.42": lambda h: h**2 / (1 + 128 * h),
+    "pre-asymptotic, from above": lambda h: h**2 + 30 * h**4,
+    "pre-asymptotic, to and fro": lambda h: h**2 * (1 + 0.3 * np.cos(np.pi * np.log2(h)) * h / h[0]),
+}
+
+
+def cells(n: int) -> Array:
+    """h = 1/8, 1/16, ... (n,)."""
+    h: Array = np.exp2(-np.arange(3.0, 3.0 + n))
+    return h
+
+
+def levels_of(errors: Sequence[float], failed: Sequence[str] = ()) -> list[Level]:
+    """Levels from 1/8 on, then the failed ones."""
+    texts = [""] * len(errors) + list(failed)
+    held = [(e,) for e in errors] + [()] * len(failed)
+    return [Level(float(h), e, text) for h, e, text in zip(cells(len(texts)), held, texts, strict=True)]
+
+
+def verdict(errors: Sequence[float], expectation: Expectation = SECOND, failed: Sequence[str] = ()) -> Verdict:
+    """Judge with the other gates open: halving dt changes 2 %, and the floor is far."""
+    halved = 1.02 * errors[-1] if len(errors) else None
+    return judge(levels_of(errors, failed), expectation, floor=1e-15, dt_halved=halved)
+
+
+def rates(
+    exact: Sequence_, scatter: float, n: int = 5, replicates: int = 1, draws: int = DRAWS
+) -> dict[Outcome, float]:
+    """Share of the draws that end in each outcome."""
+    h, rng, count = cells(n), np.random.default_rng(20), Counter[Outcome]()
+    for _ in range(draws):
+        errors = exact(h)[:, None] * np.exp(scatter * rng.standard_normal((n, replicates)))
+        levels = [Level(float(a), tuple(e.tolist())) for a, e in zip(h, errors, strict=True)]
+        count[judge(levels, SECOND, floor=1e-15, dt_halved=1.02 * float(errors[-1, 0])).outcome] += 1
+    return {outcome: count[outcome] / draws for outcome in Outcome}
+
+
+# --- rates -----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("scatter", [0.0, 0.01, 0.03, 0.08, 0.15])
+@pytest.mark.parametrize("name", BAD)
+def test_bad_sequences_hardly_ever_pass(name: str, scatter: float) -> None:
+    assert rates(BAD[name], scatter)[PASS] <= 0.05
+
+
+@pytest.mark.parametrize("scatter", [0.0, 0.01, 0.03])
+@pytest.mark.parametrize("name", GOOD)
+def test_good_sequences_hardly_ever_fail(name: str, scatter: float) -> None:
+    assert rates(GOOD[name], scatter)[FAIL] <= 0.05
+
+
+@pytest.mark.parametrize(("scatter", "least"), [(0.0, 1.0), (0.01, 0.95), (0.03, 0.65)])
+def test_clean_sequences_mostly_pass(scatter: float, least: float) -> None:
+    assert rates(GOOD["clean"], scatter)[PASS] >= least
+
+
+def test_scatter_of_15_percent_is_too_much_for_any_verdict() -> None:
+    clean = rates(GOOD["clean"], 0.15)
+    assert clean[FAIL] <= 0.05
+    assert clean[INCONCLUSIVE] >= 0.8
+
+
+def test_order_one_and_a_half_mostly_fails() -> None:
+    assert rates(BAD["order 1.5"], 0.0)[FAIL] == 1
+    assert rates(BAD["order 1.5"], 0.03)[FAIL] >= 0.6
+
+
+@pytest.mark.parametrize("name", BAD | GOOD)
+def test_three_levels_never_decide(name: str) -> None:
+    assert rates((BAD | GOOD)[name], 0.03, n=3, draws=50)[INCONCLUSIVE] == 1
+
+
+@pytest.mark.parametrize("name", ["leak 0.005 h", "floor 1e-5", "drift 2.0 to 1.5"])
+def test_the_usual_rule_passes_what_is_bad(name: str) -> None:
+    """Why this rule exists: a least-squares slope within half an order of 2 passes every draw."""
+    h, rng = cells(5), np.random.default_rng(20)
+    for _ in range(DRAWS):
+        errors = BAD[name](h) * np.exp(0.03 * rng.standard_normal(5))
+        assert abs(np.polyfit(np.log(h), np.log(errors), 1)[0] - 2) < 0.5
+    assert verdict(BAD[name](h).tolist()).outcome is not PASS
+
+
+@pytest.mark.parametrize("name", BAD)
+@pytest.mark.parametrize("scatter", [0.03, 0.15])
+def test_replicates_do_not_let_bad_sequences_pass(name: str, scatter: float) -> None:
+    assert rates(BAD[name], scatter, replicates=3, draws=100)[PASS] <= 0.05
+
+
+def test_replicates_decide_what_scatter_hides() -> None:
+    one, eight = (rates(GOOD["clean"], 0.08, replicates=r, draws=100) for r in (1, 8))
+    assert eight[PASS] >= one[PASS] + 0.3
+    assert eight[FAIL] <= 0.05
+
+
+# --- measured data ---------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("errors", [CPDI_4, CPDI_9, CPDI_4[:4]])
+def test_measured_cpdi_is_of_second_order(errors: tuple[float, ...]) -> None:
+    got = verdict(errors)
+    assert got.outcome is PASS, got.reason
+    assert got.observed == pytest.approx(2.0, abs=0.03)
+    assert got.window == (0, len(errors) - 1)
+
+
+def test_four_levels_of_cpdi_with_9_particles_leave_it_open() -> None:
+    """Local orders 1.79 2.14 2.00: they settle, but the interval reaches down to 1.78. The 128-cell run decides."""
+    got = verdict(CPDI_9[:4])
+    assert got.outcome is INCONCLUSIVE
+    assert got.interval == pytest.approx((1.784, 2.196), abs=1e-3)
+    assert "run h=1/128" in got.reason
+
+
+@pytest.mark.parametrize(("errors", "lost"), [(MPM_4, 1), (MPM_9, 1), ((8.5e-3,), 4), (MPM_4[:3], 0)])
+def test_measured_mpm_does_not_converge_as_expected(errors: tuple[float, ...], lost: int) -> None:
+    got = verdict(errors, DIVERGES, [DET] * lost)
+    assert got.outcome is PASS
+    assert "does not converge, as expected" in got.reason
+    assert ("the error grew" in got.reason) == (len(errors) > 1)
+    assert (DET in got.reason) == (lost > 0)
+
+
+def test_non_convergence_says_what_was_seen() -> None:
+    assert verdict(MPM_4, DIVERGES, [DET]).reason == (
+        "does not converge, as expected: the error grew from 4.8e-3 at h=1/8 to 2.6e-2 at h=1/64, "
+        f"and the run at h=1/128 ended with {DET}"
+    )
+
+
+# --- gates: each can trip, and names the run that would decide -------------------------------------------------------
+
+CLEAN = (cells(5) ** 2).tolist()
+
+
+def test_gate_levels() -> None:
+    got = verdict(CLEAN[:3])
+    assert (got.outcome, "run h=1/64" in got.reason) == (INCONCLUSIVE, True)
+
+
+def test_gate_finished() -> None:
+    got = verdict(CLEAN, failed=[DET])
+    assert (got.outcome, DET in got.reason, "h=1/256" in got.reason) == (INCONCLUSIVE, True, True)
+
+
+@pytest.mark.parametrize("broken", [math.nan, math.inf])
+def test_an_error_that_is_not_finite_is_a_run_that_did_not_finish(broken: float) -> None:
+    assert "not finite" in verdict([*CLEAN[:4], broken]).reason
+    assert verdict([broken]).outcome is ERROR
+
+
+@pytest.mark.parametrize(("floor", "outcome"), [(CLEAN[-1] / 99, INCONCLUSIVE), (CLEAN[-1] / 101, PASS)])
+def test_gate_round_off(floor: float, outcome: Outcome) -> None:
+    got = judge(levels_of(CLEAN), SECOND, floor=floor, dt_halved=CLEAN[-1])
+    assert got.outcome is outcome
+    assert ("round-off floor" in got.reason) == (outcome is INCONCLUSIVE)
+
+
+def test_an_exact_zero_is_round_off_and_no_crash() -> None:
+    assert "round-off floor" in judge(levels_of([*CLEAN[:4], 0.0]), SECOND, floor=0.0, dt_halved=0.0).reason
+    assert verdict([0.0] * 5, DIVERGES).outcome is INCONCLUSIVE
+
+
+@pytest.mark.parametrize("halved", [None, math.nan])
+def test_gate_time_step_not_run(halved: float | None) -> None:
+    got = judge(levels_of(CLEAN), SECOND, floor=0.0, dt_halved=halved)
+    assert (got.outcome, "run h=1/128 with half" in got.reason) == (INCONCLUSIVE, True)
+
+
+@pytest.mark.parametrize(("factor", "coupled"), [(1.09, False), (0.91, False), (1.11, True), (0.89, True)])
+def test_gate_time_step(factor: float, coupled: bool) -> None:
+    got = judge(levels_of(CLEAN), SECOND, floor=0.0, dt_halved=factor * CLEAN[-1])
+    assert got.outcome is (INCONCLUSIVE if coupled else PASS)
+    assert ("coupled" in got.reason) == coupled
+
+
+def test_gate_time_step_compares_the_unshifted_run() -> None:
+    levels = [Level(h, (e, 1.2 * e)) for h, e in zip(cells(5).tolist(), CLEAN, strict=True)]
+    assert "coupled" not in judge(levels, SECOND, floor=0.0, dt_halved=CLEAN[-1]).reason
+    assert "coupled" in judge(levels, SECOND, floor=0.0, dt_halved=1.2 * CLEAN[-1]).reason
+
+
+def test_gate_monotone() -> None:
+    got = verdict([*CLEAN[:4], CLEAN[3]])
+    assert (got.outcome, "does not fall on the way to h=1/128" in got.reason) == (INCONCLUSIVE, True)
+
+
+def test_gate_window() -> None:
+    got = verdict(BAD["drift 2.0 to 1.5"](cells(5)).tolist())
+    assert (got.outcome, got.window) == (INCONCLUSIVE, None)
+    assert "2.00 1.83 1.67 1.50 have not settled: run h=1/256" in got.reason
+
+
+def test_gate_last_order() -> None:
+    """A wide band holds the whole interval, 1.75 to 1.94, but not the last pair, 1.69."""
+    leak = BAD["leak 0.005 h"](cells(5)).tolist()
+    assert "last pair 1.69) against 1.70 to 2.30: undecided" in verdict(leak, Expectation(2.0, 0.3)).reason
+
+
+@pytest.mark.parametrize(
+    ("order", "outcome"), [(1.5, FAIL), (1.79, FAIL), (2.0, PASS), (2.2, PASS), (2.31, INCONCLUSIVE)]
+)
+def test_band(order: float, outcome: Outcome) -> None:
+    got = verdict((cells(5) ** order).tolist())
+    assert got.outcome is outcome
+    assert ("above the band" in got.reason) == (order > 2.3)
+    assert ("below the band" in got.reason) == (outcome is FAIL)
+
+
+def test_orders_that_rise_to_the_band_are_not_a_defect_yet() -> None:
+    rising = np.exp2(-np.cumsum([6, 1.40, 1.48, 1.55, 1.62]))
+    assert verdict(rising.tolist()).outcome is INCONCLUSIVE
+    assert verdict(np.exp2(-np.cumsum([6, 0.88, 0.90, 0.91, 0.91])).tolist()).outcome is FAIL
+
+
+def test_a_slope_below_the_band_is_no_fail_while_the_last_order_is_inside() -> None:
+    errors = np.exp2(-np.cumsum([6, 1.92, 1.80, 1.80, 1.901]))
+    got = verdict(errors.tolist(), Expectation(2.0, 0.1))
+    assert got.interval is not None
+    assert got.interval[1] < 1.9 < got.local_orders[-1]
+    assert got.outcome is INCONCLUSIVE
+
+
+# --- contamination ---------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("order", [1.5, 2.0, 3.0])
+def test_contamination_finds_planted_shares(order: float) -> None:
+    h = cells(5)
+    got = contamination(h, h**order + 0.1 * h[-1] * h ** (order - 1) + 0.05 * h[-1] ** order, order, 0.84)
+    assert (got.lower, got.floor) == pytest.approx((0.1 / 1.15, 0.05 / 1.15), abs=1e-6)
+    assert got.most == pytest.approx(got.total, abs=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("share", "outcome"), [(0.095, PASS), (0.105, INCONCLUSIVE), (0.49, INCONCLUSIVE), (0.51, FAIL)]
+)
+def test_contamination_limits(share: float, outcome: Outcome) -> None:
+    """A leak on a band so wide, and refined so gently, that nothing but its share of the finest error decides."""
+    h = 0.8 ** np.arange(8.0, 12.0)
+    errors = h**2 + share / (1 - share) * h[-1] * h
+    levels = [Level(float(a), (float(e),)) for a, e in zip(h, errors, strict=True)]
+    got = judge(levels, Expectation(2.0, 1.9), floor=0.0, dt_halved=float(errors[-1]))
+    assert got.contamination is not None
+    assert got.contamination.lower == pytest.approx(share, abs=1e-6)
+    assert got.outcome is outcome, got.reason
+
+
+@pytest.mark.parametrize("share", [0.5, 0.6, 0.7, 0.8])
+def test_a_leak_of_half_the_error_has_no_window(share: float) -> None:
+    """The order then falls by up to 0.17 a level: INCONCLUSIVE, never PASS; contamination still names the share."""
+    h = cells(5)
+    got = verdict((h**2 + share / (1 - share) * h[-1] * h).tolist())
+    assert (got.outcome, got.window) == (INCONCLUSIVE, None)
+    assert got.contamination is not None
+    assert got.contamination.lower == pytest.approx(share, abs=1e-6)
+
+
+@pytest.mark.parametrize("share", [0.85, 0.95])
+def test_a_leak_that_dominates_fails(share: float) -> None:
+    h = cells(5)
+    assert verdict((h**2 + share / (1 - share) * h[-1] * h).tolist()).outcome is FAIL
+
+
+def test_first_order_has_no_lower_order_but_a_floor() -> None:
+    got = contamination(cells(5), cells(5) + 0.25 * cells(5)[-1], 1.0, 0.84)
+    assert (got.lower, got.floor) == pytest.approx((0.0, 0.2), abs=1e-6)
+
+
+def test_a_pure_order_below_the_expected_one_looks_like_a_leak() -> None:
+    """The band alone would take 1.90; the fit cannot tell it from h^2 with a quarter of h in the finest error."""
+    got = verdict((cells(5) ** 1.9).tolist())
+    assert got.outcome is INCONCLUSIVE
+    assert got.contamination is not None
+    assert got.contamination.lower == pytest.approx(0.243, abs=2e-3)
+    assert verdict((cells(5) ** 1.9).tolist(), Expectation(1.9, 0.1, 0.4)).outcome is PASS
+
+
+# --- magnitude -------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("factor", "outcome"), [(0.89, FAIL), (0.92, PASS), (1.09, PASS), (1.11, FAIL)])
+def test_magnitude(factor: float, outcome: Outcome) -> None:
+    recorded = replace(SECOND, constant=CLEAN[-1], constant_h=1 / 128)
+    got = verdict([factor * e for e in CLEAN], recorded)
+    assert got.outcome is outcome
+    assert f"{factor:.2f} times the recorded" in got.reason
+
+
+@pytest.mark.parametrize(("factor", "outcome"), [(1.0, PASS), (1.11, INCONCLUSIVE)])
+def test_magnitude_recorded_at_a_cell_size_not_run_proves_no_fail(factor: float, outcome: Outcome) -> None:
+    recorded = replace(SECOND, constant=2.0**-16, constant_h=1 / 256)
+    got = verdict([factor * e for e in CLEAN], recorded)
+    assert got.outcome is outcome
+    assert ("run h=1/256" in got.reason) == (outcome is INCONCLUSIVE)
+
+
+# --- non-convergence -------------------------------------------------------------------------------------------------
+
+
+def test_convergence_where_none_was_expected_is_a_surprise() -> None:
+    got = verdict(CPDI_4, DIVERGES)
+    assert (got.outcome, "surprise" in got.reason) == (FAIL, True)
+    assert verdict(CPDI_4[:3], DIVERGES).outcome is INCONCLUSIVE  # too few to say so
+
+
+def test_growth_after_convergence_is_non_convergence() -> None:
+    assert "grew from 2.0e-3 at h=1/32" in verdict([2e-2, 5e-3, 2e-3, 9e-3], DIVERGES).reason
+
+
+def test_flat_errors_decide_nothing() -> None:
+    rng, outcomes = np.random.default_rng(20), Counter[Outcome]()
+    for _ in range(DRAWS):
+        outcomes[verdict((1e-3 * np.exp(0.15 * rng.standard_normal(5))).tolist(), DIVERGES).outcome] += 1
+    assert outcomes[INCONCLUSIVE] >= 0.95 * DRAWS
+
+
+def test_only_det_f_on_a_finer_level_counts_as_divergence() -> None:
+    assert verdict([8.5e-3], DIVERGES, ["out of memory"]).outcome is INCONCLUSIVE
+    coarse = [Level(1 / 8, (), DET), *levels_of([8.5e-3] * 2)[1:]]
+    assert judge(coarse, DIVERGES, floor=0.0, dt_halved=None).outcome is INCONCLUSIVE
+
+
+@pytest.mark.parametrize("expectation", [SECOND, DIVERGES])
+def test_nothing_finished_is_an_error(expectation: Expectation) -> None:
+    got = verdict([], expectation, [DET] * 4)
+    assert (got.outcome, got.observed, DET in got.reason) == (ERROR, None, True)
+    assert judge([], expectation, floor=0.0, dt_halved=None).outcome is ERROR
+
+
+# --- several quantities ----------------------------------------------------------------------------------------------
+
+
+def quantity(errors: Sequence[float], expectation: Expectation = SECOND) -> Quantity:
+    """A quantity with the other gates open."""
+    return Quantity(levels_of(errors), expectation, 1e-15, 1.02 * errors[-1])
+
+
+def test_a_family_of_one_is_the_plain_verdict() -> None:
+    assert judge_family([quantity(CPDI_9)]) == (verdict(CPDI_9),)
+    assert judge_family([]) == ()
+
+
+def test_holm_takes_back_a_narrow_pass() -> None:
+    """Orders whose 95 % interval just fits the band: alone a PASS, five together none."""
+    narrow = Expectation(2.0, 0.095, 0.095)
+    assert verdict(CPDI_9, narrow).outcome is PASS
+    family = judge_family([quantity(CPDI_9, narrow)] * 5)
+    assert {v.outcome for v in family} == {INCONCLUSIVE}
+    assert all("99 % interval" in v.reason for v in family)
+
+
+def test_holm_steps_down_past_each_pass() -> None:
+    """The sure ones go first and use up no error; non-convergence does not count, a gated quantity does."""
+    narrow = Expectation(2.0, 0.095, 0.095)
+    sure, diverging, gated = quantity(CLEAN), quantity(MPM_4, DIVERGES), quantity(CLEAN[:3])
+    assert [v.outcome for v in judge_family([quantity(CPDI_9, narrow), sure, diverging])] == [PASS] * 3
+    assert [v.outcome for v in judge_family([quantity(CPDI_9, narrow), sure, gated])] == [
+        INCONCLUSIVE,
+        PASS,
+        INCONCLUSIVE,
+    ]
+
+
+# --- invariants ------------------------------------------------------------------------------------------------------
+
+noisy = st.lists(st.floats(-0.3, 0.3), min_size=5, max_size=5).map(lambda z: (cells(5) ** 2 * np.exp(z)).tolist())
+
+
+@settings(max_examples=60, deadline=None, derandomize=True)
+@given(noisy, st.floats(1e-6, 1e6), st.floats(1e-3, 1e3), st.permutations(range(5)))
+def test_units_and_order_of_levels_do_not_matter(errors: list[float], e: float, h: float, order: list[int]) -> None:
+    plain = verdict(errors)
+    levels = [replace(level, h=h * level.h, errors=(e * level.errors[0],)) for level in levels_of(errors)]
+    got = judge([levels[i] for i in order], SECOND, floor=e * 1e-15, dt_halved=1.02 * e * errors[-1])
+    assert got.outcome is plain.outcome
+    assert got.local_orders == pytest.approx(plain.local_orders, abs=1e-9)
+    assert got.observed == pytest.approx(plain.observed)
+    assert got.interval == pytest.approx(plain.interval)
+
+
+@settings(max_examples=100, deadline=None, derandomize=True)
+@given(noisy)
+def test_a_pass_holds_what_it_promises(errors: list[float]) -> None:
+    got = verdict(errors)
+    if got.outcome is PASS:
+        assert got.interval is not None
+        assert got.contamination is not None
+        assert 1.8 <= got.interval[0] <= got.interval[1] <= 2.3
+        assert 1.8 <= got.local_orders[-1] <= 2.3
+        assert got.contamination.total <= got.contamination.most <= 0.1
+    assert got.reason
+    assert got.outcome is not INCONCLUSIVE or "run " in got.reason
+
+
+@pytest.mark.parametrize("factor", [0.5, 2 / 3])
+def test_orders_do_not_depend_on_the_refinement_ratio(factor: float) -> None:
+    h = factor ** np.arange(3.0, 8.0)
+    assert local_orders(h, 7 * h**1.7) == pytest.approx([1.7] * 4)
+
+
+def test_the_same_replicates_give_the_same_verdict() -> None:
+    levels = [Level(h, (e, 1.1 * e, 0.95 * e)) for h, e in zip(cells(5).tolist(), CLEAN, strict=True)]
+    one, two = (judge(levels, SECOND, floor=0.0, dt_halved=CLEAN[-1]) for _ in range(2))
+    assert one == two
+
+
+# --- statistics ------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("orders", "window"),
+    [
+        ((2.0, 2.0, 2.0, 2.0), (0, 4)),
+        ((1.2, 1.83, 1.91, 1.99), (1, 4)),
+        ((1.79, 2.14, 2.00, 2.00), (0, 4)),  # settles: changes 0.35, 0.14, 0.00
+        ((1.0, 1.3, 1.5, 1.64), (2, 4)),  # changes 0.3, 0.2, 0.14: too slow to settle, the last is steady
+        ((2.0, 1.83, 1.67, 1.50), None),
+        ((1.0, 2.0), None),  # one change cannot shrink
+        ((2.0,), None),
+        ((), None),
+    ],
+)
+def test_asymptotic_window(orders: tuple[float, ...], window: tuple[int, int] | None) -> None:
+    assert asymptotic_window(np.array(orders)) == window
+
+
+def test_slope_against_textbook_numbers() -> None:
+    """y = 0, 1, 1, 2 at x = 0..3: slope 0.6, residual variance 0.1, t(2) = 4.303."""
+    got = fit_slope(np.exp(np.arange(4.0)), [np.exp([y]) for y in (0.0, 1.0, 1.0, 2.0)])
+    assert (got.value, got.error, got.dof) == pytest.approx((0.6, math.sqrt(0.1 / 5), 2))
+    assert got.interval(0.95) == pytest.approx((0.6 - 4.3027 * 0.1414214, 0.6 + 4.3027 * 0.1414214), abs=1e-4)
+
+
+def test_doubt_is_where_the_interval_touches_the_band() -> None:
+    slope = fit_slope(cells(5), [np.array([e]) for e in CPDI_9])
+    assert slope.interval(1 - slope.doubt(1.8, 2.3))[0] == pytest.approx(1.8)
+    assert slope.doubt(2.1, 2.3) == 1
+
+
+@pytest.mark.parametrize("replicates", [1, 3])
+def test_intervals_cover_the_truth_as_often_as_they_say(replicates: int) -> None:
+    rng, hits, h = np.random.default_rng(20), 0, cells(5)
+    for _ in range(400):
+        errors = h[:, None] ** 2 * np.exp(0.1 * rng.standard_normal((5, replicates)))
+        low, high = fit_slope(h, list(errors)).interval(0.95)
+        hits += low <= 2 <= high
+    assert 0.92 <= hits / 400 <= 0.98
+
+
+# --- misuse ----------------------------------------------------------------------------------------------------------
+
+
+def test_misuse_is_refused() -> None:
+    with pytest.raises(ValueError, match="share a cell size"):
+        judge([Level(0.1, (1.0,)), Level(0.1, (2.0,))], SECOND, floor=0.0, dt_halved=None)
+    with pytest.raises(ValueError, match="not a level"):
+        Level(0.0, (1.0,))
+    with pytest.raises(ValueError, match="not a level"):
+        Level(0.1, (-1.0,))
+    with pytest.raises(ValueError, match="belong together"):
+        Expectation(2.0, constant=1.0)
+    with pytest.raises(ValueError, match="width"):
+        Expectation(2.0, below=0.0)

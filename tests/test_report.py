@@ -1,0 +1,287 @@
+"""The report of a stored study: deterministic, self-contained, complete, and right to the digit."""
+
+import base64
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+from unittest.mock import patch
+
+import fixtures_study as fixtures
+import numpy as np
+import pandas as pd
+import pytest
+
+from cases import study as contract
+from cases.order import Expectation
+from cases.store import Store, StoreError
+from cases.study import Declared, Failure, Run
+from reports import words
+from reports.blind_spots import DIAGONAL, SMALL, STARTS_AT_REST, blind_spots
+from reports.figures.error_field import choose, domains
+from reports.render import render
+from reports.stored import read
+
+
+@pytest.fixture(autouse=True)
+def sources() -> Iterator[None]:
+    with fixtures.sources():
+        yield
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A whole study, rendered once."""
+    made = fixtures.make(tmp_path_factory.mktemp("study"))
+    with fixtures.sources():
+        render(made)
+    return made
+
+
+@pytest.fixture(scope="module")
+def page(folder: Path) -> str:
+    return (folder / "report.html").read_text()
+
+
+class Outline(HTMLParser):
+    """Headings, images and tables of a page."""
+
+    def __init__(self, page: str) -> None:
+        super().__init__()
+        self.levels: list[int] = []
+        self.images: list[dict[str, str | None]] = []
+        self.tags: list[str] = []
+        self.feed(page)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append(tag)
+        if re.fullmatch("h[1-6]", tag):
+            self.levels.append(int(tag[1]))
+        if tag == "img":
+            self.images.append(dict(attrs))
+
+
+def files(folder: Path) -> dict[str, bytes]:
+    """What render writes."""
+    made = [folder / "report.html", *folder.glob("figures/*"), *folder.glob("tables/*")]
+    return {str(file.relative_to(folder)): file.read_bytes() for file in made}
+
+
+def text(page: str) -> str:
+    return re.sub(r"\s+", " ", re.sub(r"<[^>]+>", "", re.sub(r"data:[^\"]+", "", page)))
+
+
+def test_rendering_twice_gives_the_same_bytes(folder: Path) -> None:
+    before = files(folder)
+    render(folder)
+    assert files(folder) == before
+    assert {Path(name).suffix for name in before} == {".html", ".svg", ".pdf", ".png", ".csv"}
+
+
+def test_page_is_self_contained(page: str) -> None:
+    outline = Outline(page)
+    assert len(outline.images) == 5  # two panels, local orders, a field for each method
+    for image in outline.images:
+        kind, _, data = (image["src"] or "").partition(",")
+        assert kind == "data:image/svg+xml;base64"
+        assert b"<svg" in base64.b64decode(data, validate=True)
+        assert len(image["alt"] or "") > 20
+    assert "http" not in re.sub(r"base64,[^\"]+", "", page)
+    assert not {"script", "iframe", "object"} & set(outline.tags)
+    assert outline.tags.count("link") == 1  # the empty icon
+    assert len(page) < 3e6
+
+
+def test_headings_are_in_order_and_every_table_has_a_caption(page: str) -> None:
+    outline = Outline(page)
+    assert outline.levels[0] == 1
+    assert outline.levels.count(1) == 1
+    assert all(after - before <= 1 for before, after in zip(outline.levels, outline.levels[1:], strict=False))
+    assert outline.tags.count("table") == outline.tags.count("caption") > 8
+
+
+def test_verdicts_come_first_and_in_words(page: str) -> None:
+    said = text(page)
+    assert "4 of 4 judged quantities PASS." in said
+    assert said.index("Verdicts") < said.index("CPDI, 4 per cell: u in rms") < said.index("Figure 1: error")
+    assert "Converges as expected" in said
+    assert "Sadeghirad et al. 2011" in said
+    assert said.index("Does not converge, as registered before the run") < said.index("Figure 1: error")
+
+
+def test_divergence_is_said_plainly_with_the_measured_numbers(page: str) -> None:
+    said = text(page)
+    plain = "Classical MPM diverges here with refinement, while the paper&#39;s printed norm shows it converging"
+    assert f"{plain}: from 1/8 to 1/64 the error in rms grows 5.3-fold (4.814e-3 to 2.573e-2)" in said
+    assert "printed falls 4.2-fold" in said
+    assert "a seeming order of 0.69" in said
+
+
+def test_no_divergence_is_claimed_of_a_method_that_converges(tmp_path: Path) -> None:
+    fixtures.make(tmp_path, ("cpdi",))
+    store = Store(tmp_path)
+    study = store.study()
+    expected = tuple(replace(d, expectation=Expectation(None)) if d.judged else d for d in study.declared)
+    store.create(replace(study, declared=expected))
+    said = text(render(tmp_path).read_text())
+    assert "FAIL" in said
+    assert "Converges, and that was not expected" in said
+    assert "diverges here" not in said
+
+
+def test_every_run_is_listed_with_its_end(folder: Path, page: str) -> None:
+    record = read(folder)
+    said = text(page)
+    assert len(record.study.runs) == 32
+    for run in record.study.runs:
+        assert run.digest in said
+    failures = [r.failure for r in record.results.values() if r.failure]
+    assert len(failures) == 6
+    for failure in failures:
+        assert words.prose(str(failure)) in said
+    assert page.count('<td class="text lost">failed</td>') == 6
+
+
+def test_csv_round_trips_to_the_stored_numbers(folder: Path) -> None:
+    record = read(folder)
+    errors = pd.read_csv(folder / "tables" / "errors.csv")
+    runs = pd.read_csv(folder / "tables" / "runs.csv").set_index("digest")
+    finished = [r for r in record.results.values() if r.status == "finished"]
+    assert len(errors) == 4 * len(finished)
+    named = {(r["method"], r["ppc"], r["cells"], r["courant"], r["quantity"]): r for r in errors.to_dict("records")}
+    for result in finished:
+        run = result.run
+        for quantity, norms in result.errors.items():
+            row = named[run.method, run.ppc, run.cells, run.courant, quantity]
+            assert {norm: row[norm] for norm in norms} == norms
+    for result in record.results.values():
+        assert (runs.loc[result.digest, "wall_s"], runs.loc[result.digest, "dt"]) == (result.wall_s, result.dt)
+
+
+def test_orders_of_the_table_of_the_paper(folder: Path) -> None:
+    orders = pd.read_csv(folder / "tables" / "orders.csv")
+    wanted = orders[(orders.method == "cpdi") & (orders.ppc == 4) & (orders.quantity == "u")]
+    for norm, slopes in {"rms": [2.09, 1.98, 2.00, 2.00], "printed": [3.59, 3.48, 3.50, 3.50]}.items():
+        np.testing.assert_allclose(wanted[wanted.norm == norm].order, slopes, atol=0.006)
+    assert set(orders[orders.role == "judged"].norm) == {"rms"}
+
+
+def test_printed_is_nowhere_among_the_judged(folder: Path, page: str) -> None:
+    verdicts = pd.read_csv(folder / "tables" / "verdicts.csv")
+    assert set(verdicts[verdicts.role == "judged"].norm) == {"rms"}
+    assert "printed" not in page[page.index("Judged errors") : page.index('id="shown"')]
+    assert "adds 1.5 orders in 2-D which the method does not have" in text(page)
+
+
+def test_incomplete_study_says_so(tmp_path: Path) -> None:
+    fixtures.make(tmp_path, ("cpdi",), skip=3)
+    said = text(render(tmp_path).read_text())
+    assert "This study is not complete: 3 runs of 17 not done yet." in said
+    assert "not run yet" in said
+    assert "INCONCLUSIVE" in said
+
+
+def test_study_without_any_result(tmp_path: Path) -> None:
+    fixtures.make(tmp_path, ("mpm",), skip=15)
+    said = text(render(tmp_path).read_text())
+    assert "15 runs of 15 not done yet" in said
+    assert "ERROR" in said
+
+
+@pytest.mark.parametrize("method", ["cpdi", "mpm"])
+def test_study_with_one_method(tmp_path: Path, method: str) -> None:
+    fixtures.make(tmp_path, (method,))
+    said = text(render(tmp_path).read_text())
+    assert "2 of 2 judged quantities PASS." in said
+    assert words.method("mpm" if method == "cpdi" else "cpdi") + ", 4 per cell" not in said
+
+
+def test_two_solutions_are_told_apart(tmp_path: Path) -> None:
+    store = Store(fixtures.make(tmp_path, ("cpdi",)))
+    study, other = store.study(), "clamped_shear:G=0.05"
+    runs = tuple(replace(run, solution=other) for run in study.runs)
+    declared = tuple(replace(d, solution=other) for d in study.declared)
+    store.create(replace(study, runs=study.runs + runs, declared=study.declared + declared))
+    for old, new in zip(study.runs, runs, strict=True):
+        if (result := store.get(old.digest)) is not None:
+            store.put(replace(result, run=new, digest=new.digest), store.arrays(old.digest))
+    said = text(render(tmp_path).read_text())
+    assert f"CPDI, 4 per cell: u in rms, {other}" in said
+    assert DIAGONAL in said
+    names = {file.stem for file in tmp_path.glob("figures/*.svg")}
+    assert {"figure1_axis_aligned", "figure1_clamped_shear_G_0_05"} <= names
+
+
+def test_results_of_earlier_sources_are_shown_and_named_as_such(tmp_path: Path) -> None:
+    fixtures.make(tmp_path, ("cpdi",))
+    with patch.object(contract, "sources_digest", lambda: "later"):
+        said = text(render(tmp_path).read_text())
+    assert "computed by other sources than those now installed" in said
+    assert "2 of 2 judged quantities PASS." in said
+    assert "not complete" not in said
+
+
+def test_text_from_the_store_is_escaped(tmp_path: Path) -> None:
+    fixtures.make(tmp_path, ("cpdi",))
+    store = Store(tmp_path)
+    store.create(replace(store.study(), title="<img src=x>", command="verify mms --out 'a & b'"))
+    page = render(tmp_path).read_text()
+    assert "<img src=x>" not in page
+    assert "&lt;img src=x&gt;" in page
+    assert "a &amp; b" in page
+
+
+def test_folder_that_is_no_study_is_one_clear_line(tmp_path: Path) -> None:
+    with pytest.raises(StoreError, match=r"no study folder"):
+        render(tmp_path)
+
+
+def test_domains_are_the_deformed_parallelograms() -> None:
+    arrays = {
+        "x": np.array([[0.5, 0.25]], np.float32),
+        "F": np.array([[[2.0, 1.0], [0.0, 1.0]]], np.float32),
+        "r0": np.array([[[0.125, 0.0], [0.0, 0.125]]], np.float32),
+    }
+    corners = [[0.5 - 0.375, 0.125], [0.5 + 0.125, 0.125], [0.5 + 0.375, 0.375], [0.5 - 0.125, 0.375]]
+    np.testing.assert_allclose(domains(arrays)[0], corners)
+
+
+def test_field_is_of_the_run_asked_for_or_the_nearest_that_finished(folder: Path) -> None:
+    record = read(folder)
+    first, other = choose(record, "cpdi", "axis_aligned"), choose(record, "mpm", "axis_aligned", 128, 9)
+    assert first
+    assert (first.cells, first.ppc) == (16, 4)
+    assert other
+    assert (other.cells, other.ppc) == (64, 9)
+
+
+@pytest.mark.parametrize(
+    ("solution", "seen", "unseen"),
+    [
+        ("axis_aligned", [], [DIAGONAL, STARTS_AT_REST]),
+        ("axis_aligned:A=0.0001,phase=0.5", [STARTS_AT_REST], [DIAGONAL, SMALL]),
+        ("clamped_shear", [DIAGONAL, STARTS_AT_REST, SMALL], []),
+    ],
+)
+def test_blind_spots_follow_the_solution_and_its_parameters(solution: str, seen: list[str], unseen: list[str]) -> None:
+    found = blind_spots(solution)
+    assert set(unseen) <= set(found)
+    assert not set(seen) & set(found)
+
+
+@pytest.mark.parametrize(
+    ("value", "written"),
+    [(1.127e-5, "1.127e-5"), (0.0, "0"), (float("nan"), words.DASH), (None, words.DASH), (12345.0, "1.234e4")],
+)
+def test_numbers_are_written_alike(value: float | None, written: str) -> None:
+    assert words.sci(value) == written
+
+
+def test_words_of_expectations_and_failures() -> None:
+    expected = Declared("cpdi", "affine", 4, "u", "rms", True, Expectation(2.0))
+    assert words.expected(expected) == "2.00 (1.80 to 2.30)"
+    assert words.expected(replace(expected, expectation=Expectation(None))) == "diverges"
+    assert words.series(Run("mpm", "affine", "neo_hookean", 8, 9, 0.4)) == "MPM, 9 per cell"
+    assert words.prose(str(Failure("det F <= 0", 3, 7, (1, 2)))) == "det F ≤ 0 at step 3, particle 7 in cell (1, 2)"
+    assert words.order(-0.476) == f"{words.MINUS}0.48"

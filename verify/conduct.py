@@ -1,0 +1,82 @@
+"""What every study command does: run what is not stored, judge, report, print, and say it in the exit code."""
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+from cases.study import Result, Study
+
+if TYPE_CHECKING:
+    from cases.store import Store
+
+SMALL = 2e6  # cost below which worker processes take longer to start than they save
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Where and how a study is run and told."""
+
+    folder: Path
+    jobs: int | None = None
+    threads: int = 1
+    json_output: bool = False
+    junit: Path | None = None
+
+
+@contextmanager
+def usage() -> Iterator[None]:
+    """What is wrong with the input or the store becomes one line and exit code 2."""
+    from cases.runner import RunnerError
+    from cases.store import StoreError
+
+    try:
+        yield
+    except (ValueError, StoreError, RunnerError) as error:
+        raise typer.TyperException(str(error)) from error
+    except OSError as error:
+        raise typer.TyperException(f"{error.strerror or error}: {error.filename or ''}") from error
+
+
+def conduct(study: Study, settings: Settings) -> int:
+    """Run, judge, report; returns the exit code."""
+    with usage():
+        from cases.store import Store
+        from cases.verdicts import exit_code, findings
+        from reports.render import render
+        from verify.document import document
+        from verify.junit import write_junit
+        from verify.table import show
+
+        store = Store(settings.folder)
+        store.create(study)
+        results = compute(study, store, settings)
+        found = findings(study, results)
+        page = render(settings.folder)
+        if settings.junit:
+            write_junit(settings.junit, study, found)
+        if settings.json_output:
+            typer.echo(document(study, found, results, page))
+        else:
+            show(study, found, page)
+    return exit_code(found)
+
+
+def compute(study: Study, store: "Store", settings: Settings) -> dict[str, Result]:
+    """The Results of the study; in this process if there is little to do or one job is asked for."""
+    from cases.runner import cost, pending, perform, process_pool, run_study, stored
+    from verify.progress import progress
+
+    waiting = pending(study, store)
+    jobs = min(settings.jobs or os.cpu_count() or 1, max(1, len(waiting)))
+    with progress(waiting, cost) as done:
+        if jobs > 1 and sum(map(cost, waiting)) > SMALL:
+            with process_pool(jobs) as executor:
+                return run_study(study, store, executor, settings.threads, done)
+        for run in waiting:
+            done(perform(run, settings.folder, settings.threads))
+    return stored(study, store)
