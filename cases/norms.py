@@ -18,13 +18,11 @@ from numba import prange
 
 from cases.study import QUANTITIES
 from mms.exact import ROOM, Exact
-from solver._jit import BLOCK, F1, F2, F3, kernel, nothing
+from solver._jit import BLOCK, F1, F2, F3, i8, kernel, nothing
 from solver.state import Floats, Particles
 
 CHUNK = 128 * BLOCK  # particles of one partial sum; fixed, so that the sums have one order for any number of threads
 SHARES = 8  # sums of squared errors of u, v, F, sigma, and the largest ones
-
-COMPARE = nothing(Exact, F2, F1, F2, F2, F2, F3, F2, F1, F2, F2)
 
 
 @kernel(inline=True)
@@ -64,28 +62,34 @@ def tally_block(out, X, x, v, F, sigma, V0, b, lanes):
         b[2 * i + 1] = out[13 * BLOCK + i]
 
 
-@kernel(COMPARE, parallel=True)
-def compare(exact, carried, scalars, X, x, v, F, sigma, V0, b, shares):
-    """Write the body force to b, and the sums of squared errors of each chunk to shares (chunks, 8)."""
-    P = X.shape[0]
+@kernel(nothing(Exact, i8, i8, F2, F1, F2, F2, F2, F3, F2, F1, F2, F1))
+def compare_chunk(exact, start, end, carried, scalars, X, x, v, F, sigma, V0, b, shares):
+    """The particles start ... end-1; their sums to shares (8,)."""
     width = carried.shape[1]
     columns = carried.reshape(-1)
     Xs, xs, vs, bs = X.reshape(-1), x.reshape(-1), v.reshape(-1), b.reshape(-1)
     Fs, sigmas = F.reshape(-1), sigma.reshape(-1)
+    out = np.empty(ROOM * BLOCK)
+    lanes = np.zeros(SHARES * BLOCK)
+    for lo in range(start, end, BLOCK):
+        hi = min(lo + BLOCK, end)
+        exact(columns[lo * width : hi * width], scalars, hi - lo, out)
+        tally_block(
+            out, Xs[2 * lo : 2 * hi], xs[2 * lo : 2 * hi], vs[2 * lo : 2 * hi], Fs[4 * lo : 4 * hi],
+            sigmas[4 * lo : 4 * hi], V0[lo:hi], bs[2 * lo : 2 * hi], lanes,
+        )  # fmt: skip
+    for q in range(4):
+        shares[q] = lanes[q * BLOCK : (q + 1) * BLOCK].sum()
+        shares[4 + q] = lanes[(4 + q) * BLOCK : (5 + q) * BLOCK].max()
+
+
+@kernel(nothing(Exact, F2, F1, F2, F2, F2, F3, F2, F1, F2, F2), parallel=True)
+def compare(exact, carried, scalars, X, x, v, F, sigma, V0, b, shares):
+    """Write the body force to b, and the sums of squared errors of each chunk to shares (chunks, 8)."""
     for c in prange(shares.shape[0]):
-        out = np.empty(ROOM * BLOCK)
-        lanes = np.zeros(SHARES * BLOCK)
-        end = min(P, (c + 1) * CHUNK)
-        for lo in range(c * CHUNK, end, BLOCK):
-            hi = min(lo + BLOCK, end)
-            exact(columns[lo * width : hi * width], scalars, hi - lo, out)
-            tally_block(
-                out, Xs[2 * lo : 2 * hi], xs[2 * lo : 2 * hi], vs[2 * lo : 2 * hi], Fs[4 * lo : 4 * hi],
-                sigmas[4 * lo : 4 * hi], V0[lo:hi], bs[2 * lo : 2 * hi], lanes,
-            )  # fmt: skip
-        for q in range(4):
-            shares[c, q] = lanes[q * BLOCK : (q + 1) * BLOCK].sum()
-            shares[c, 4 + q] = lanes[(4 + q) * BLOCK : (5 + q) * BLOCK].max()
+        start = c * CHUNK
+        end = min(X.shape[0], start + CHUNK)
+        compare_chunk(exact, start, end, carried, scalars, X, x, v, F, sigma, V0, b, shares[c])
 
 
 @dataclass

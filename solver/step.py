@@ -127,7 +127,9 @@ def grid_to_particles(model: Model) -> None:
         g.motion, model.dt, model.scheme.flip, model.lost,
     )  # fmt: skip
     if (model.lost >= 0).any():
-        fail(model, int(model.lost[model.lost >= 0][0]), "det F <= 0")
+        lo = int(model.lost[model.lost >= 0][0])
+        J = np.linalg.det(p.F[lo : lo + BLOCK])
+        fail(model, lo + int(np.flatnonzero(~((J > 0) & (J < np.inf)))[0]), "det F <= 0")
 
 
 def refuse_outside(model: Model, blocks: Ints) -> None:

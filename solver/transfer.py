@@ -3,12 +3,15 @@
 Particles are sorted into slabs of `width` grid columns. Slabs of one colour (even, then odd) are worked on at the same
 time and never touch the same node: the box given to a fill is the slab and a guard of (width - 1) // 2 columns. So
 there are no atomics and no copies, and each node's sum has one order: the same bits for any number of threads.
+
+The parallel kernels are thin, and call one that is compiled apart: what stands inside a prange takes far longer to
+compile.
 """
 
 import numpy as np
 from numba import prange
 
-from solver._jit import BLOCK, F1, F2, F3, I1, f8, i8, kernel, nothing
+from solver._jit import BLOCK, F1, F2, F3, I1, f8, flag, i8, kernel, nothing
 from solver.weights import Fill
 
 B = np.uint64(BLOCK)  # unsigned indices: a signed one costs a comparison and a selection, for Python's x[-1]
@@ -22,10 +25,11 @@ def scatter(K, lo, hi, v, F, sigma, m, V0, b, table, node, mass, given):
     dNy = np.uint64(2 * K * BLOCK)
     for q in range(np.uint64(hi - lo)):
         p = np.uint64(lo) + q
-        px = m[p] * v[p, 0]
-        py = m[p] * v[p, 1]
-        bx = m[p] * b[p, 0]
-        by = m[p] * b[p, 1]
+        mp = m[p]  # a local: read again after each store otherwise, since the compiler must fear that they overlap
+        px = mp * v[p, 0]
+        py = mp * v[p, 1]
+        bx = mp * b[p, 0]
+        by = mp * b[p, 1]
         V = V0[p] * (F[p, 0, 0] * F[p, 1, 1] - F[p, 0, 1] * F[p, 1, 0])
         sxx = -V * sigma[p, 0]
         syy = -V * sigma[p, 1]
@@ -40,17 +44,33 @@ def scatter(K, lo, hi, v, F, sigma, m, V0, b, table, node, mass, given):
             momentum_y = given[i, 1] + N * py
             force_x = given[i, 2] + (N * bx + (sxx * gx + sxy * gy))
             force_y = given[i, 3] + (N * by + (sxy * gx + syy * gy))
-            mass[i] += N * m[p]
+            mass[i] += N * mp
             given[i, 0] = momentum_x
             given[i, 1] = momentum_y
             given[i, 2] = force_x
             given[i, 3] = force_y
 
 
-P2G = nothing(Fill, i8, I1, i8, F2, F2, F3, F2, F1, F1, F2, F3, F1, f8, i8, i8, F1, F2, I1)
+@kernel(i8(Fill, i8, i8, i8, F2, F2, F3, F2, F1, F1, F2, F3, F1, f8, i8, f8, f8, F1, F2))
+def p2g_slab(fill, K, start, end, x, v, F, sigma, m, V0, b, r0, origin, inv_dx, ny, left, right, mass, given):
+    """The particles start ... end-1; -1, or the first particle of the block that reaches out of the box."""
+    xs = x.reshape(-1)
+    Fs = F.reshape(-1)
+    rs = r0.reshape(-1)
+    table = np.empty(3 * K * BLOCK)
+    node = np.empty(K * BLOCK, np.int64)
+    for lo in range(start, end, BLOCK):
+        hi = min(lo + BLOCK, end)
+        if not fill(
+            xs[2 * lo : 2 * hi], Fs[4 * lo : 4 * hi], rs[4 * lo : 4 * hi],
+            origin[0], origin[1], inv_dx, ny, left, right, 0.0, ny - 1.0, table, node,
+        ):  # fmt: skip
+            return lo
+        scatter(K, lo, hi, v, F, sigma, m, V0, b, table, node, mass, given)
+    return -1
 
 
-@kernel(P2G, parallel=True)
+@kernel(nothing(Fill, i8, I1, i8, F2, F2, F3, F2, F1, F1, F2, F3, F1, f8, i8, i8, F1, F2, I1), parallel=True)
 def p2g(fill, K, start, width, x, v, F, sigma, m, V0, b, r0, origin, inv_dx, nx, ny, mass, given, strayed):
     """Sums of all particles on the grid.
 
@@ -60,35 +80,23 @@ def p2g(fill, K, start, width, x, v, F, sigma, m, V0, b, r0, origin, inv_dx, nx,
     slabs = start.shape[0] - 1
     mass[:] = 0.0
     given[:] = 0.0
-    strayed[:] = -1
-    xs = x.reshape(-1)
-    Fs = F.reshape(-1)
-    rs = r0.reshape(-1)
     guard = (width - 1) // 2
     for colour in range(2):
         for pair in prange((slabs - colour + 1) // 2):
             s = 2 * pair + colour
-            table = np.empty(3 * K * BLOCK)
-            node = np.empty(K * BLOCK, np.int64)
             left = max(0.0, float(s * width - guard))
             right = min(nx - 1.0, float((s + 1) * width + guard))
-            for lo in range(start[s], start[s + 1], BLOCK):
-                hi = min(lo + BLOCK, start[s + 1])
-                if not fill(
-                    xs[2 * lo : 2 * hi], Fs[4 * lo : 4 * hi], rs[4 * lo : 4 * hi],
-                    origin[0], origin[1], inv_dx, ny, left, right, 0.0, ny - 1.0, table, node,
-                ):  # fmt: skip
-                    strayed[s] = lo
-                    break
-                scatter(K, lo, hi, v, F, sigma, m, V0, b, table, node, mass, given)
+            strayed[s] = p2g_slab(
+                fill, K, start[s], start[s + 1], x, v, F, sigma, m, V0, b, r0, origin, inv_dx, ny, left, right,
+                mass, given,
+            )  # fmt: skip
 
 
 @kernel(inline=True)
 def gather(K, lo, hi, x, v, F, motion, dt, flip, table, node):
-    """New velocity, place and F of particles lo ... hi-1. Returns the first with det F <= 0 or not finite, else -1."""
+    """New velocity, place and F of particles lo ... hi-1."""
     dNx = np.uint64(K * BLOCK)
     dNy = np.uint64(2 * K * BLOCK)
-    lost = np.int64(-1)
     for q in range(np.uint64(hi - lo)):
         p = np.uint64(lo) + q
         vx = vy = ax = ay = 0.0
@@ -121,36 +129,46 @@ def gather(K, lo, hi, x, v, F, motion, dt, flip, table, node):
         F[p, 0, 1] = Fxy + dt * (Lxx * Fxy + Lxy * Fyy)
         F[p, 1, 0] = Fyx + dt * (Lyx * Fxx + Lyy * Fyx)
         F[p, 1, 1] = Fyy + dt * (Lyx * Fxy + Lyy * Fyy)
-        J = F[p, 0, 0] * F[p, 1, 1] - F[p, 0, 1] * F[p, 1, 0]
-        if not (0.0 < J < np.inf) and lost < 0:
-            lost = np.int64(p)
-    return lost
 
 
-G2P = nothing(Fill, i8, F2, F2, F3, F3, F1, f8, i8, i8, F2, f8, f8, I1)
+@kernel(flag(F1))
+def invertible(F):
+    """Whether 0 < det F < infinity for a block of particles, flat. In a loop of its own: in gather it costs a fifth."""
+    bad = 0
+    for b in range(F.shape[0] // 4):
+        J = F[4 * b] * F[4 * b + 3] - F[4 * b + 1] * F[4 * b + 2]
+        bad += int(not (J > 0.0)) + int(not (J < np.inf))
+    return bad == 0
 
 
-@kernel(G2P, parallel=True)
-def g2p(fill, K, x, v, F, r0, origin, inv_dx, nx, ny, motion, dt, flip, lost):
-    """FLIP velocity with a share (1 - flip) of PIC, place, and F <- (I + dt L) F (paper eq. (4)) of all particles.
-
-    `lost` (chunks,) is -1, or the first particle of the chunk that has lost its det F.
-    """
-    P = x.shape[0]
+@kernel(i8(Fill, i8, i8, i8, F2, F2, F3, F3, F1, f8, i8, i8, F2, f8, f8))
+def g2p_chunk(fill, K, start, end, x, v, F, r0, origin, inv_dx, nx, ny, motion, dt, flip):
+    """The particles start ... end-1; -1, or the first particle of the last block in which one has lost its det F."""
     xs = x.reshape(-1)
     Fs = F.reshape(-1)
     rs = r0.reshape(-1)
+    table = np.empty(3 * K * BLOCK)
+    node = np.empty(K * BLOCK, np.int64)
+    lost = -1
+    for lo in range(start, end, BLOCK):
+        hi = min(lo + BLOCK, end)
+        fill(
+            xs[2 * lo : 2 * hi], Fs[4 * lo : 4 * hi], rs[4 * lo : 4 * hi],
+            origin[0], origin[1], inv_dx, ny, 0.0, nx - 1.0, 0.0, ny - 1.0, table, node,
+        )  # fmt: skip
+        gather(K, lo, hi, x, v, F, motion, dt, flip, table, node)
+        if not invertible(Fs[4 * lo : 4 * hi]):
+            lost = lo
+    return lost
+
+
+@kernel(nothing(Fill, i8, F2, F2, F3, F3, F1, f8, i8, i8, F2, f8, f8, I1), parallel=True)
+def g2p(fill, K, x, v, F, r0, origin, inv_dx, nx, ny, motion, dt, flip, lost):
+    """FLIP velocity with a share (1 - flip) of PIC, place, and F <- (I + dt L) F (paper eq. (4)) of all particles.
+
+    `lost` (chunks,) is -1, or the first particle of a block in which one has lost its det F.
+    """
     for c in prange(lost.shape[0]):
-        table = np.empty(3 * K * BLOCK)
-        node = np.empty(K * BLOCK, np.int64)
-        lost[c] = -1
-        end = min(P, (c + 1) * CHUNK)
-        for lo in range(c * CHUNK, end, BLOCK):
-            hi = min(lo + BLOCK, end)
-            fill(
-                xs[2 * lo : 2 * hi], Fs[4 * lo : 4 * hi], rs[4 * lo : 4 * hi],
-                origin[0], origin[1], inv_dx, ny, 0.0, nx - 1.0, 0.0, ny - 1.0, table, node,
-            )  # fmt: skip
-            gone = gather(K, lo, hi, x, v, F, motion, dt, flip, table, node)
-            if gone >= 0 and lost[c] < 0:
-                lost[c] = gone
+        start = c * CHUNK
+        end = min(x.shape[0], start + CHUNK)
+        lost[c] = g2p_chunk(fill, K, start, end, x, v, F, r0, origin, inv_dx, nx, ny, motion, dt, flip)
