@@ -5,9 +5,10 @@ DIR/runs/<digest>.json   a Result
 DIR/runs/<digest>.npz    the particles at its last step: X, x (P,2), F (P,2,2), r0 (P,2,2), error_u (P,), float32
 """
 
+import io
 import json
 import os
-import tempfile
+import threading
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -52,10 +53,9 @@ class Store:
     def put(self, result: Result, arrays: Arrays) -> None:
         """Write arrays, then the Result: the JSON file is what makes a run stored."""
         path = self.runs / result.digest
-        with tempfile.TemporaryFile() as buffer:
-            np.savez(buffer, allow_pickle=False, **arrays)
-            buffer.seek(0)
-            self._write(path.with_suffix(".npz"), buffer.read())
+        buffer = io.BytesIO()
+        np.savez(buffer, allow_pickle=False, **arrays)
+        self._write(path.with_suffix(".npz"), buffer.getvalue())
         self._write(path.with_suffix(".json"), json.dumps(asdict(result), indent=1).encode())
 
     def get(self, digest: str) -> Result | None:
@@ -97,15 +97,15 @@ class Store:
     def _write(path: Path, data: bytes) -> None:
         """Atomic: a reader sees the old file or the whole new one, whenever the power goes."""
         try:
-            handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+            temporary = path.with_name(f".{path.name}.{os.getpid()}.{threading.get_ident()}")
             try:
-                with os.fdopen(handle, "wb") as file:
+                with temporary.open("wb") as file:
                     file.write(data)
                     file.flush()
                     os.fsync(file.fileno())
                 os.replace(temporary, path)
             except BaseException:
-                Path(temporary).unlink(missing_ok=True)
+                temporary.unlink(missing_ok=True)
                 raise
         except OSError as error:
             raise StoreError(f"cannot write {path}: {error.strerror}; results stored before are kept") from error

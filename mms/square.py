@@ -33,6 +33,11 @@ class Square:
         return np.full(2, self.L)
 
     @property
+    def margin(self) -> float:
+        """How far the body may move out of its reference square; the grid is wider by it."""
+        return 0.0
+
+    @property
     def duration(self) -> float:
         """Time that a study covers."""
         return 2 * self.L / self.C

@@ -103,17 +103,21 @@ class Particles:
         return array
 
 
-def fill_rectangle(grid: Grid, ppc: int, rho0: float) -> Particles:
-    """Regular layout of `ppc` particles in each cell of the domain; square domains that tile it, column by column.
+def fill_rectangle(
+    grid: Grid, ppc: int, rho0: float, lower: Floats | None = None, upper: Floats | None = None
+) -> Particles:
+    """Regular layout of `ppc` particles in each cell, column by column; square domains that tile the rectangle.
 
-    Raises ValueError where `ppc` is no square number.
+    `lower`, `upper` (2,): corners of the body, on cell faces; the whole domain of the grid by default. Raises
+    ValueError where `ppc` is no square number.
     """
     side = isqrt(max(ppc, 0))
     if side < 1 or side * side != ppc:
         raise ValueError(f"{ppc} particles per cell is no square number; choose 1, 4, 9, 16, ...")
+    first, last = (grid.lower if lower is None else lower), (grid.upper if upper is None else upper)
     step = grid.dx / side
-    counts = np.rint((grid.upper - grid.lower) / step).astype(int)
-    axes = [grid.lower[a] + step * (np.arange(counts[a]) + 0.5) for a in (0, 1)]
+    counts = np.rint((last - first) / step).astype(int)
+    axes = [first[a] + step * (np.arange(counts[a]) + 0.5) for a in (0, 1)]
     X = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
     V0 = np.full(len(X), step * step)
     return Particles(X=X, m=rho0 * V0, V0=V0, r0=np.tile(0.5 * step * np.eye(2), (len(X), 1, 1)))

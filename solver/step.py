@@ -115,8 +115,9 @@ def particles_to_grid(model: Model) -> None:
 
 def equation_of_motion(model: Model) -> None:
     """Velocities and accelerations at the nodes."""
-    g, cutoff = model.grid, MASS_CUTOFF * float(model.particles.m.max())
-    solve(g.mass, g.given, g.motion, model.walls.held, model.walls.value, model.dt, cutoff, g.ny)
+    g, w, cutoff = model.grid, model.walls, MASS_CUTOFF * float(model.particles.m.max())
+    w.move(g, model.time, model.dt)
+    solve(g.mass, g.given, g.motion, w.held, w.value, w.rate, model.dt, cutoff, g.ny)
 
 
 def grid_to_particles(model: Model) -> None:

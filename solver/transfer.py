@@ -143,7 +143,7 @@ def invertible(F):
 
 @kernel(i8(Fill, i8, i8, i8, F2, F2, F3, F3, F1, f8, i8, i8, F2, f8, f8))
 def g2p_chunk(fill, K, start, end, x, v, F, r0, origin, inv_dx, nx, ny, motion, dt, flip):
-    """The particles start ... end-1; -1, or the first particle of the last block in which one has lost its det F."""
+    """The particles start ... end-1; -1, or the first particle of the first block in which one has lost its det F."""
     xs = x.reshape(-1)
     Fs = F.reshape(-1)
     rs = r0.reshape(-1)
@@ -157,7 +157,7 @@ def g2p_chunk(fill, K, start, end, x, v, F, r0, origin, inv_dx, nx, ny, motion, 
             origin[0], origin[1], inv_dx, ny, 0.0, nx - 1.0, 0.0, ny - 1.0, table, node,
         )  # fmt: skip
         gather(K, lo, hi, x, v, F, motion, dt, flip, table, node)
-        if not invertible(Fs[4 * lo : 4 * hi]):
+        if lost < 0 and not invertible(Fs[4 * lo : 4 * hi]):
             lost = lo
     return lost
 

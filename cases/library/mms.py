@@ -14,7 +14,7 @@ from cases.norms import Norms, compare, new_shares
 from cases.store import Arrays
 from cases.study import QUANTITIES, Failure, Result, Run
 from mms.manufacture import Manufactured, manufacture
-from solver.boundary import box
+from solver.boundary import box, moving
 from solver.plugins import create, load
 from solver.state import Floats, Grid, Particles, fill_rectangle
 from solver.step import Model, RunFailed, Scheme, advance, check_time_step
@@ -47,8 +47,10 @@ def setup(run: Run) -> tuple[Model, Comparison, int]:
     """
     solution: Any = create("mms.solutions", run.solution)
     material: Any = create("solver.material", run.material)
-    grid = Grid(float(solution.upper[0] - solution.lower[0]) / run.cells, solution.lower, solution.upper)
-    particles = fill_rectangle(grid, run.ppc, material.rho0)
+    dx = float(solution.upper[0] - solution.lower[0]) / run.cells
+    margin = dx * ceil(solution.margin / dx)
+    grid = Grid(dx, solution.lower - margin, solution.upper + margin)
+    particles = fill_rectangle(grid, run.ppc, material.rho0, solution.lower, solution.upper)
     steps = ceil(solution.duration / (run.courant * grid.dx / solution.C) * (1 - 1e-12))
     dt = solution.duration / steps
     behind = 0.5 * dt if run.staggered else 0.0
@@ -59,7 +61,8 @@ def setup(run: Run) -> tuple[Model, Comparison, int]:
     particles.F, particles.sigma = exact.F(X, 0.0), exact.sigma(X, 0.0)
     particles.carried = exact.kernel.columns(X)
     scheme, basis = Scheme(run.flip, run.staggered), load("solver.basis", run.method)()
-    model = Model(grid, particles, basis, material, box(grid, solution.boundary), dt, scheme)
+    walls = moving(grid, solution.walls) if solution.boundary == "moving" else box(grid, solution.boundary)
+    model = Model(grid, particles, basis, material, walls, dt, scheme)
     norms = Norms(len(particles), float(particles.V0.mean()))
     return model, Comparison(exact, norms, new_shares(particles), behind), steps
 

@@ -11,23 +11,41 @@ from typing import Any
 import numpy as np
 from numba import prange
 
-from solver._jit import F2, F3, f8, kernel, nothing
+from solver._jit import BLOCK, F1, F2, F3, f8, kernel, nothing
 from solver.elastic import Elastic
 from solver.state import Particles
+
+
+@kernel(nothing(F1, F1, f8, f8))
+def stress_block(F, sigma, lam, mu):
+    """Cauchy stress of a block, flat; logarithms in a loop of their own, so that the compiler vectorises the other."""
+    n = F.shape[0] // 4
+    logJ = np.empty(BLOCK)
+    for b in range(n):
+        logJ[b] = np.log(F[4 * b] * F[4 * b + 3] - F[4 * b + 1] * F[4 * b + 2])
+    for b in range(n):
+        xx = F[4 * b]
+        xy = F[4 * b + 1]
+        yx = F[4 * b + 2]
+        yy = F[4 * b + 3]
+        per_J = 1.0 / (xx * yy - xy * yx)
+        shear = mu * per_J
+        bulk = lam * per_J * logJ[b] - shear
+        sigma[4 * b] = shear * (xx * xx + xy * xy) + bulk
+        sigma[4 * b + 1] = shear * (yx * yx + yy * yy) + bulk
+        sigma[4 * b + 2] = shear + bulk
+        sigma[4 * b + 3] = shear * (xx * yx + xy * yy)
 
 
 @kernel(nothing(F3, F2, f8, f8), parallel=True)
 def stress(F, sigma, lam, mu):
     """Cauchy stress (P,4) of F (P,2,2)."""
-    for p in prange(F.shape[0]):
-        xx, xy, yx, yy = F[p, 0, 0], F[p, 0, 1], F[p, 1, 0], F[p, 1, 1]
-        J = xx * yy - xy * yx
-        shear = mu / J
-        bulk = (lam * np.log(J) - mu) / J
-        sigma[p, 0] = shear * (xx * xx + xy * xy) + bulk
-        sigma[p, 1] = shear * (yx * yx + yy * yy) + bulk
-        sigma[p, 2] = shear + bulk
-        sigma[p, 3] = shear * (xx * yx + xy * yy)
+    Fs = F.reshape(-1)
+    sigmas = sigma.reshape(-1)
+    for block in prange((F.shape[0] + BLOCK - 1) // BLOCK):
+        lo = 4 * BLOCK * block
+        hi = min(lo + 4 * BLOCK, Fs.shape[0])
+        stress_block(Fs[lo:hi], sigmas[lo:hi], lam, mu)
 
 
 @dataclass(frozen=True)

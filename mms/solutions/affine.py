@@ -1,0 +1,72 @@
+"""Homogeneous deformation of a square: the patch test, with rotation, shear and volume change.
+
+    u = (F(t) - I) X,   F = [[1 + a sin w t, b (1 - cos w t)], [c sin w t, 1 + d (1 - cos w t)]],   w = pi C / L
+
+on 0 <= X, Y <= L. Stress is uniform, so the divergence of P vanishes and b = F'' X. Boundary: the edge moves, so the
+nodes of cells that the body does not fill have the body's affine velocity, continued: at the node x at time t that of
+the material point there, F'(t + dt/2) F(t)^-1 x. With it, F <- (I + dt L) F is exact up to the error of the midpoint
+rule in time; what is left is how well momentum is mapped between particles and grid.
+Source: the affine patch of VERIFICATION 4; bounds on the parameters keep det F > 0.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mms.square import Square
+from solver.state import Floats
+
+if TYPE_CHECKING:
+    import sympy as sp
+
+
+@dataclass(frozen=True)
+class Affine(Square):
+    """a, b, c, d: amplitudes of the four components of F; L: side; C: speed that sets the period."""
+
+    a: float = 0.1
+    b: float = 0.08
+    c: float = -0.06
+    d: float = -0.05
+    boundary: ClassVar[str] = "moving"
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        for name in "abcd":
+            self.limit(name, getattr(self, name), 0.25)
+
+    @property
+    def margin(self) -> float:
+        """The largest displacement is below a half for parameters in bounds."""
+        return 0.5 * self.L
+
+    def displacement(self, X: Sequence["sp.Symbol"], t: "sp.Symbol") -> "sp.Matrix":
+        """u of the reference place X and the time t."""
+        import sympy as sp
+
+        angle = sp.pi * self.exact(self.C) * t / self.exact(self.L)
+        return sp.Matrix(self._matrix(sp.sin(angle), 1 - sp.cos(angle))) * sp.Matrix(list(X))
+
+    def walls(self, nodes: Floats, t: float, dt: float) -> tuple[NDArray[np.bool_], Floats, Floats]:
+        """Nodes (n,2) not surrounded by filled cells, with velocity F'(t + dt/2) F^-1 x and acceleration F'' F^-1 x."""
+        w, dx = np.pi * self.C / self.L, float(nodes[1, 1] - nodes[0, 1])
+        inverse = np.linalg.inv(np.eye(2) + self._numbers(np.sin(w * t), 1 - np.cos(w * t)))
+        inside = np.ones(len(nodes), dtype=bool)
+        for corner in ((-dx, -dx), (-dx, dx), (dx, -dx), (dx, dx)):
+            X = (nodes + corner) @ inverse.T
+            inside &= ((X >= -1e-9 * self.L) & (X <= (1 + 1e-9) * self.L)).all(axis=1)
+        half = w * (t + 0.5 * dt)
+        X = nodes @ inverse.T
+        velocity = X @ (w * self._numbers(np.cos(half), np.sin(half))).T
+        acceleration = X @ (w * w * self._numbers(-np.sin(w * t), np.cos(w * t))).T
+        return np.repeat(~inside[:, None], 2, axis=1), velocity, acceleration
+
+    def _matrix(self, odd: Any, even: Any) -> list[list[Any]]:
+        """F - I, or one of its rates, from the values that sin w t and 1 - cos w t, or their rates, have."""
+        return [[self.a * odd, self.b * even], [self.c * odd, self.d * even]]
+
+    def _numbers(self, odd: float, even: float) -> Floats:
+        return np.array(self._matrix(odd, even))
