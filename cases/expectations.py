@@ -11,17 +11,17 @@ from cases.order import Expectation
 JUDGED = ("u", "rms")
 JUDGED_PPC = (4, 9)
 
-DIVERGES = "particles cross cells: Steffen, Kirby & Berzins 2008; PHYSICS 6.1"
-SECOND = "Sadeghirad, Brannon & Burghardt 2011; two independent codes, VERIFICATION 1"
+DIVERGES = "particles cross cells: Steffen, Kirby & Berzins 2008; recorded table in ARCHITECTURE.md"
+SECOND = "Sadeghirad, Brannon & Burghardt 2011; recorded table in ARCHITECTURE.md"
 
 EXPECTED: dict[tuple[str, str], Expectation] = {
     ("cpdi", "axis_aligned"): Expectation(2.0, source=SECOND),
     ("mpm", "axis_aligned"): Expectation(None, source=DIVERGES),
-    ("cpdi", "clamped_shear"): Expectation(2.0, source="1.95 to 2.09 in 2-D, VERIFICATION 3"),
+    ("cpdi", "clamped_shear"): Expectation(2.0, source="Sadeghirad, Brannon & Burghardt 2011"),
     ("mpm", "clamped_shear"): Expectation(None, source=DIVERGES),
 }
 
-# recorded errors of u in rms: (method, solution, ppc) -> (h, error), VERIFICATION 1
+# recorded errors of u in rms: (method, solution, ppc) -> (h, error), table in ARCHITECTURE.md
 RECORDED = {
     ("cpdi", "axis_aligned", 4): (1 / 128, 1.127e-5),
     ("cpdi", "axis_aligned", 9): (1 / 128, 1.066e-5),

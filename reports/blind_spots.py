@@ -1,6 +1,6 @@
 """What a study cannot see, by the name of its solution.
 
-Source: VERIFICATION.md 4 and 6, measured with planted defects.
+Source: measured with planted defects, of which tests/test_defects.py holds some.
 """
 
 DIAGONAL = (

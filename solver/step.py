@@ -43,7 +43,7 @@ class RunFailed(Exception):  # noqa: N818 - a failed run is a result, not an err
 class Scheme:
     """`flip`: share of FLIP in the particle velocity, the rest is PIC. `staggered`: velocities live at half steps.
 
-    The start of a staggered run is v at t = -dt/2; without it the first order of time is lost (PHYSICS 10).
+    The start of a staggered run is v at t = -dt/2; without it the first order of time is lost.
     """
 
     flip: float = 1.0

@@ -6,7 +6,7 @@ on 0 <= X, Y <= L. Stress is uniform, so the divergence of P vanishes and b = F'
 nodes of cells that the body does not fill have the body's affine velocity, continued: at the node x at time t that of
 the material point there, F'(t + dt/2) F(t)^-1 x. With it, F <- (I + dt L) F is exact up to the error of the midpoint
 rule in time; what is left is how well momentum is mapped between particles and grid.
-Source: the affine patch of VERIFICATION 4; bounds on the parameters keep det F > 0.
+Source: the project's own; bounds on the parameters keep det F > 0.
 """
 
 from collections.abc import Sequence

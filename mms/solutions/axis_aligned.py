@@ -6,7 +6,7 @@
 Boundary: u_n = 0 on all four sides and P is diagonal, so rollers are consistent. Two full columns of waves pass in the
 duration 2 L / C, one period. A < L / (2 pi), or F is not invertible.
 What it cannot see: F is diagonal, so shear, rotation and transposes are invisible; with phase = 0 the motion starts
-without acceleration, which hides a missing half-step start (PHYSICS 9.1).
+without acceleration, which hides a missing half-step start.
 """
 
 from collections.abc import Sequence

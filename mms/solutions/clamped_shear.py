@@ -5,7 +5,7 @@
 
 Boundary: u = 0 on all four sides, so fixed walls. F is full and not symmetric, J varies, and both 1 - cos (which starts
 with acceleration) and sin (which starts with velocity) occur: what axis_aligned cannot see, this one does.
-Source: the project's own; VERIFICATION 3, 4. The bound on G keeps the displacement gradient below one.
+Source: the project's own. The bound on G keeps the displacement gradient below one.
 """
 
 from collections.abc import Sequence

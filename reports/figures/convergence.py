@@ -17,7 +17,7 @@ from reports import style, words
 from reports.stored import Record, Series
 
 NORMS = ("rms", "printed")
-EXTRA = {"rms": 0.0, "printed": 1.5}  # orders that the norm adds in 2-D with dt ~ h: VERIFICATION.md 1
+EXTRA = {"rms": 0.0, "printed": 1.5}  # orders that the norm adds in 2-D with dt ~ h: cases/norms.py
 TITLES = {"rms": "rms: what verdicts use", "printed": "printed: shown, never judged"}
 
 

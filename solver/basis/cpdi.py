@@ -1,9 +1,10 @@
 """CPDI: hat functions averaged over a parallelogram that deforms with the particle.
 
-The field is interpolated bilinearly from the four corners x + (-r1-r2, r1-r2, r1+r2, -r1+r2), r_i = F r0_i, so that
-N = 1/4 sum S(corner), and dN is the exact mean gradient of that interpolation over the domain, written from the corners
-because the literature holds both half and full side vectors. Source: Sadeghirad, Brannon & Burghardt 2011; paper eqs.
-(2), (3); gradient weights, which the paper leaves out, from PHYSICS 7.1. Order 2, large deformation included.
+The field is interpolated bilinearly from the four corners x + (-r1-r2, r1-r2, r1+r2, -r1+r2), r_i = F r0_i. So
+N = 1/4 sum S(corner), and dN is the exact mean gradient of that interpolation over the domain. It is written from the
+corners, because the literature holds both half and full side vectors. Order 2, large deformation included.
+Source: Sadeghirad, Brannon & Burghardt 2011; paper eqs. (2), (3). The paper leaves the gradient weights out; they are
+edge integrals of the interpolation, divided by the area.
 """
 
 from typing import ClassVar

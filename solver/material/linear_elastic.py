@@ -35,7 +35,7 @@ class LinearElastic(Elastic):
 
     def energy(self, F: Any, log: Callable[[Any], Any]) -> Any:
         """W = lam/2 tr(e)^2 + mu e:e per initial volume; F is 3 x 3, of numbers or symbols."""
-        e = [[(F[i][j] + F[j][i]) / 2 - (i == j) for j in range(3)] for i in range(3)]
+        e = [[(F[i][j] + F[j][i]) / 2 - int(i == j) for j in range(3)] for i in range(3)]
         trace = e[0][0] + e[1][1] + e[2][2]
         return self.lam / 2 * trace**2 + self.mu * sum(e[i][j] ** 2 for i in range(3) for j in range(3))
 

@@ -1,6 +1,6 @@
 """Compressible neo-Hookean solid: W = mu/2 (tr F^T F - 3) - mu ln J + lam/2 (ln J)^2, plane strain (F33 = 1).
 
-P = mu (F - F^-T) + lam ln J F^-T, sigma = [mu (F F^T - I) + lam ln J I] / J (PHYSICS 9). The kernel is written by hand
+P = mu (F - F^-T) + lam ln J F^-T, sigma = [mu (F F^T - I) + lam ln J I] / J. The kernel is written by hand
 from sigma; manufactured solutions differentiate `energy`, so the source term never comes from the code under test.
 """
 

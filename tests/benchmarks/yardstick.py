@@ -1,4 +1,4 @@
-"""The yardstick: each method as two loops fused by hand, weights in registers, no table, no slabs, no checks, one thread.
+"""The yardstick: each method as two loops fused by hand: weights in registers, no table, slabs or checks, one thread.
 
 Compiled with the same flags as the solver. This is what the split into fills and transfers is measured against.
 """

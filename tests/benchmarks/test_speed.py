@@ -1,0 +1,126 @@
+"""Speed, as ratios within one run: `make bench`. Nothing here asserts a time; what is asserted is that results agree.
+
+Every comparison alternates its two sides, so that a drift of the machine's speed hits both; the median of the pairs'
+ratios is what README quotes. 128 x 128 cells, 4 particles a cell; body force and errors left out but where named.
+"""
+
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from statistics import median
+
+import numpy as np
+import pytest
+import yardstick
+
+from cases.library.mms import Comparison, setup
+from cases.study import Run
+from solver._jit import use_threads
+from solver.boundary import MASS_CUTOFF
+from solver.plugins import available
+from solver.state import Particles
+from solver.step import Model, advance
+
+CELLS, PPC, PAIRS = 128, 4, 60
+METHODS = available("solver.basis")
+
+
+def unloaded(particles: Particles, t: float) -> None:
+    """No body force, no errors."""
+
+
+def start(method: str) -> tuple[Model, Comparison]:
+    model, comparison, _ = setup(Run(method, "axis_aligned", "neo_hookean", CELLS, PPC, 0.1))
+    comparison(model.particles, 0.0)
+    return model, comparison
+
+
+def fused(model: Model) -> Callable[[], None]:
+    """One step of the yardstick on the model's own arrays."""
+    p, g, law = model.particles, model.grid, model.material
+    held, cutoff = model.walls.held.astype(float), float(MASS_CUTOFF * p.m.max())
+    kernel = getattr(yardstick, type(model.basis).__name__.lower())
+    return lambda: kernel(
+        p.x, p.v, p.F, p.sigma, p.m, p.V0, p.b, p.r0, g.origin, 1.0 / g.dx, g.ny, g.mass, g.given, g.motion,
+        held, model.dt, cutoff, law.lam, law.mu,
+    )  # fmt: skip
+
+
+def paired(first: Callable[[], object], second: Callable[[], object]) -> tuple[float, float]:
+    """Median ratio of the times second / first over alternating calls, and the median time of the first."""
+    first(), second()
+    ratios, times = [], []
+    for _ in range(PAIRS):
+        t = [time.perf_counter()]
+        for call in (first, second):
+            call()
+            t.append(time.perf_counter())
+        ratios.append((t[2] - t[1]) / (t[1] - t[0]))
+        times.append(t[1] - t[0])
+    return median(ratios), median(times)
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("threads", [1, 2])
+def test_updates(benchmark, method: str, threads: int) -> None:
+    """Particle updates a second."""
+    use_threads(threads)
+    model, _ = start(method)
+    benchmark.pedantic(advance, (model, unloaded), rounds=PAIRS, warmup_rounds=3)
+    benchmark.extra_info["million updates a second"] = len(model.particles) / benchmark.stats.stats.median / 1e6
+
+
+@pytest.mark.parametrize("method", ["mpm", "cpdi"])
+def test_against_yardstick(benchmark, method: str) -> None:
+    """Speed on one thread over that of the hand-fused kernel, which must give the same particles."""
+    use_threads(1)
+    mine, theirs = start(method)[0], start(method)[0]
+    ratio, _ = paired(lambda: advance(mine, unloaded), fused(theirs))
+    assert np.allclose(mine.particles.in_initial_order("x"), theirs.particles.x, rtol=0, atol=1e-13)
+    assert np.allclose(mine.particles.in_initial_order("F"), theirs.particles.F, rtol=0, atol=1e-10)
+    report(benchmark, f"{method}: speed over the hand-fused kernel", ratio)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_two_threads(benchmark, method: str) -> None:
+    """Speed of two threads over one, with the same bits."""
+    one, two = start(method)[0], start(method)[0]
+
+    def step(model: Model, threads: int) -> None:
+        use_threads(threads)
+        advance(model, unloaded)
+
+    ratio, _ = paired(lambda: step(two, 2), lambda: step(one, 1))
+    for name in ("x", "v", "F", "sigma"):
+        assert np.array_equal(one.particles.in_initial_order(name), two.particles.in_initial_order(name))
+    report(benchmark, f"{method}: speed of two threads over one", ratio)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_cost_of_comparison(benchmark, method: str) -> None:
+    """Body force and error norms, as a share of a step without them."""
+    use_threads(1)
+    model, comparison = start(method)
+    share, _ = paired(lambda: advance(model, unloaded), lambda: comparison(model.particles, model.time))
+    report(benchmark, f"{method}: body force and errors over a step", share)
+
+
+def test_memory(benchmark) -> None:
+    """Bytes a particle beyond 300 MB, from the peak of a process of its own with 1.3 million particles."""
+    code = (
+        "from cases.library.mms import setup, peak_memory\n"
+        "from cases.study import Run\nfrom solver.step import advance\n"
+        "model, comparison, _ = setup(Run('cpdi', 'axis_aligned', 'neo_hookean', 380, 9, 0.4))\n"
+        "for _ in range(3): advance(model, comparison)\n"
+        "print((peak_memory() - 300) * 2**20 / len(model.particles))"
+    )
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    report(benchmark, "bytes a particle beyond 300 MB", float(run.stdout))
+
+
+def report(benchmark, name: str, value: float) -> None:
+    """Keep the number with the benchmark, and print it with -s."""
+    benchmark.extra_info[name] = value
+    benchmark.pedantic(lambda: None)
+    print(f"\n{name}: {value:.2f}")
