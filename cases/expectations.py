@@ -6,7 +6,7 @@ magnitude gate with them. Judged is u in rms with 4 and 9 particles per cell; al
 
 from dataclasses import replace
 
-from cases.order import Expectation
+from cases.records import Expectation
 
 JUDGED = ("u", "rms")
 JUDGED_PPC = (4, 9)

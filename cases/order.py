@@ -9,12 +9,14 @@ which growth or failed runs show. The statistics stand in fit.py, the norms in n
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from enum import StrEnum
 from functools import cached_property
 
 import numpy as np
 
 from cases.fit import Contamination, Fit, contamination
+from cases.records import Expectation, Level, Outcome, Verdict
+
+__all__ = ["Expectation", "Level", "Outcome", "Quantity", "Verdict", "judge", "judge_family"]
 
 LEVELS = 4  # fewer cannot show that the order has settled
 CLEAR = 100.0  # times the round-off floor
@@ -26,76 +28,8 @@ GROWTH = 2.0  # a flat sequence with 15 % scatter grows by 1.5 from its best lev
 CONVERGES = 0.5  # a smaller order is nearly a stall: no surprise where non-convergence is expected
 
 
-class Outcome(StrEnum):
-    """What the harness says of one quantity."""
-
-    PASS = "PASS"
-    FAIL = "FAIL"
-    INCONCLUSIVE = "INCONCLUSIVE"
-    ERROR = "ERROR"
-
-
 PASS, FAIL, INCONCLUSIVE = Outcome.PASS, Outcome.FAIL, Outcome.INCONCLUSIVE
 Finding = tuple[Outcome, str]
-
-
-@dataclass(frozen=True)
-class Expectation:
-    """Registered before the run: the band [order - below, order + above], its source, and the recorded error.
-
-    `constant` is the error once recorded at cell size `constant_h`. An order of None expects non-convergence.
-    Raises ValueError if only one of the two is given, or if the band has no width.
-    """
-
-    order: float | None
-    below: float = 0.2
-    above: float = 0.3
-    source: str = ""
-    constant: float | None = None
-    constant_h: float | None = None
-
-    def __post_init__(self) -> None:
-        if (self.constant is None) != (self.constant_h is None):
-            raise ValueError("constant and constant_h belong together")
-        if self.below <= 0 or self.above <= 0:
-            raise ValueError(f"a band needs width on both sides, not {self.below} and {self.above}")
-
-
-@dataclass(frozen=True)
-class Level:
-    """Errors at one cell size `h`: one, or one a replicate, the run on the unshifted grid first.
-
-    Raises ValueError for a cell size that is not positive or a negative error: a norm has no sign.
-    """
-
-    h: float
-    errors: tuple[float, ...]
-    failed: str = ""
-
-    def __post_init__(self) -> None:
-        if not self.h > 0 or any(e < 0 for e in self.errors):
-            raise ValueError(f"not a level: h = {self.h}, errors = {self.errors}")
-
-    @property
-    def ended(self) -> str:
-        """Why this level has no error to judge; empty if it has one."""
-        if self.failed or not self.errors:
-            return self.failed or "no error"
-        return "" if np.isfinite(self.errors).all() else "an error that is not finite"
-
-
-@dataclass(frozen=True)
-class Verdict:
-    """Outcome, what decided it in one sentence, and the numbers behind it, over the finished levels, coarse to fine."""
-
-    outcome: Outcome
-    expected: float | None
-    observed: float | None
-    interval: tuple[float, float] | None
-    reason: str
-    local_orders: tuple[float, ...] = ()
-    window: tuple[int, int] | None = None
-    contamination: Contamination | None = None
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass, field
 from functools import cache
 from typing import Literal
 
-from cases.order import Expectation
+from cases.records import Expectation
 from solver.sources import TOP, digest
 
 FORMAT = 1  # of study.json and of every Result; a reader refuses another number

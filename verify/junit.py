@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from xml.etree import ElementTree
 
-from cases.order import Outcome
+from cases.records import Outcome
 from cases.study import Study
 from cases.verdicts import Finding
 

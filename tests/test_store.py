@@ -1,0 +1,287 @@
+"""The run store: what is written is read back equal, is never half there, and is lost by nothing that goes wrong."""
+
+import errno
+import json
+import os
+from dataclasses import fields, replace
+from pathlib import Path
+
+import fixtures_study as fixtures
+import numpy as np
+import pytest
+
+from cases import study as contract
+from cases.order import Expectation
+from cases.store import Store, StoreError
+from cases.study import Declared, Failure, Result, Run, Study, sources_digest
+
+RUN = Run("cpdi", "axis_aligned", "neo_hookean", 8, 4, 0.4)
+OTHER = {str: "other", int: 7, float: 0.125}
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> Store:
+    made = Store(tmp_path / "study")
+    made.create(Study("mms", "title", "verify mms", (RUN,), ()))
+    return made
+
+
+def finished(run: Run = RUN) -> Result:
+    return fixtures._result(run)
+
+
+def content(folder: Path) -> dict[str, bytes]:
+    """Every file of a folder, hidden ones too."""
+    return {str(file.relative_to(folder)): file.read_bytes() for file in folder.rglob("*") if file.is_file()}
+
+
+def no_space(*_: object, **__: object) -> None:
+    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+
+# ---- what is written is read back
+
+
+@pytest.mark.parametrize(
+    "result",
+    [
+        finished(),
+        replace(finished(), status="failed", errors={}, failure=Failure("det F <= 0", 21, 35, (2, 2))),
+        replace(finished(), status="failed", errors={}, failure=Failure("dt above the stability limit")),
+    ],
+    ids=["finished", "failed", "failed at once"],
+)
+def test_result_round_trip(store: Store, result: Result) -> None:
+    store.put(result, {})
+    assert store.get(result.digest) == result  # tuples come back as tuples, so dataclasses compare equal
+
+
+def test_numbers_come_back_to_the_last_bit(store: Store) -> None:
+    odd = replace(finished(), wall_s=0.1 + 0.2, dt=5e-324, scale={"u": 1 / 3, "v": 1.7976931348623157e308})
+    store.put(odd, {})
+    assert store.get(odd.digest) == odd
+
+
+def test_study_round_trip(tmp_path: Path) -> None:
+    expectations = (Expectation(2.0, source="theory", constant=1e-5, constant_h=1 / 128), Expectation(None), None)
+    declared = tuple(Declared("cpdi", "affine", 4, "u", "rms", e is not None, e) for e in expectations)
+    study = Study("mms", "title", "verify mms", (RUN, replace(RUN, force=True)), declared)
+    Store(tmp_path).create(study)
+    assert Store(tmp_path).study() == study
+
+
+def test_arrays_round_trip(store: Store) -> None:
+    arrays = fixtures.arrays(RUN)
+    store.put(finished(), arrays)
+    found = store.arrays(RUN.digest)
+    assert found.keys() == arrays.keys()
+    for name, values in arrays.items():
+        assert found[name].dtype == values.dtype
+        np.testing.assert_array_equal(found[name], values)
+
+
+def test_what_is_not_stored_is_none(store: Store) -> None:
+    assert store.get("0" * 16) is None
+
+
+def test_create_keeps_results(store: Store) -> None:
+    store.put(finished(), {})
+    store.create(Study("mms", "another", "verify mms", (), ()))
+    assert store.get(RUN.digest) == finished()
+    assert store.study().title == "another"
+
+
+# ---- the digest is the name of the run
+
+
+@pytest.mark.parametrize("name", [field.name for field in fields(Run)])
+def test_digest_depends_on_every_field(name: str) -> None:
+    value = getattr(RUN, name)
+    changed = not value if isinstance(value, bool) else OTHER[type(value)]
+    assert replace(RUN, **{name: changed}).digest != RUN.digest
+
+
+def test_digest_depends_on_the_sources(monkeypatch: pytest.MonkeyPatch) -> None:
+    before = RUN.digest
+    monkeypatch.setattr(contract, "sources_digest", lambda: "changed")
+    assert RUN.digest != before
+    assert len(RUN.digest) == 16
+
+
+def test_digest_is_repeatable() -> None:
+    assert RUN.digest == Run("cpdi", "axis_aligned", "neo_hookean", 8, 4, 0.4).digest
+
+
+SOURCES = ("solver/step.py", "solver/basis/a.py", "mms/derive.py", "mms/solutions/b.py", "cases/library/c.py")
+
+
+@pytest.fixture
+def tree(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A small tree of sources in place of the installed one."""
+    for name in (*SOURCES, "cases/norms.py", "cases/order.py", "reports/render.py"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text("x = 1\n")
+    monkeypatch.setattr("cases.study.TOP", tmp_path)
+    monkeypatch.setattr("solver.sources.TOP", tmp_path)
+    return tmp_path
+
+
+@pytest.mark.parametrize("name", [*SOURCES, "cases/norms.py"])
+def test_sources_that_make_numbers_count(tree: Path, name: str) -> None:
+    before = sources_digest.__wrapped__()
+    (tree / name).write_text("x = 2\n")
+    assert sources_digest.__wrapped__() != before
+
+
+@pytest.mark.parametrize("name", ["cases/order.py", "reports/render.py"])
+def test_a_verdict_or_report_is_no_reason_to_run_again(tree: Path, name: str) -> None:
+    before = sources_digest.__wrapped__()
+    (tree / name).write_text("x = 2\n")
+    assert sources_digest.__wrapped__() == before
+
+
+# ---- atomic: old or new, never half
+
+
+class PowerCutError(BaseException):
+    """Not an Exception, as SIGINT is none: the clean-up has to work for both."""
+
+
+def power_cut(*_: object) -> None:
+    raise PowerCutError
+
+
+@pytest.mark.parametrize("moment", ["os.fsync", "os.replace"])
+def test_cut_while_writing_leaves_the_old_content(store: Store, monkeypatch: pytest.MonkeyPatch, moment: str) -> None:
+    store.put(finished(), fixtures.arrays(RUN))
+    before = content(store.folder)
+    monkeypatch.setattr(moment, power_cut)
+    with pytest.raises(PowerCutError):
+        store.put(replace(finished(), wall_s=1.0), {})
+    assert content(store.folder) == before  # no temporary file either
+
+
+def test_cut_between_arrays_and_result_leaves_the_run_to_be_done(store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Arrays are written first: a run whose Result is there has its arrays too."""
+    replace_file, calls = os.replace, []
+
+    def cut_at_second(source: str, target: Path) -> None:
+        calls.append(target)
+        if len(calls) == 2:
+            raise PowerCutError
+        replace_file(source, target)
+
+    monkeypatch.setattr("os.replace", cut_at_second)
+    with pytest.raises(PowerCutError):
+        store.put(finished(), fixtures.arrays(RUN))
+    assert [target.suffix for target in calls] == [".npz", ".json"]
+    assert store.get(RUN.digest) is None
+
+
+@pytest.mark.parametrize("call", ["os.fsync", "os.replace", "tempfile.mkstemp"])
+def test_disk_full(store: Store, monkeypatch: pytest.MonkeyPatch, call: str) -> None:
+    store.put(finished(), fixtures.arrays(RUN))
+    before = content(store.folder)
+    monkeypatch.setattr(call, no_space)
+    with pytest.raises(StoreError, match="No space left on device; results stored before are kept") as told:
+        store.put(finished(replace(RUN, cells=16)), {})
+    assert "\n" not in str(told.value)
+    monkeypatch.undo()
+    assert content(store.folder) == before
+    assert store.get(RUN.digest) == finished()
+
+
+@pytest.mark.xfail(raises=OSError, strict=True, reason="Store.put lets an OSError of its buffer through")
+def test_disk_full_while_packing_arrays(store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("numpy.savez", no_space)
+    with pytest.raises(StoreError):
+        store.put(finished(), {})
+
+
+# ---- what is broken is named and left as it is
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "is broken and was left as it is"),
+        ('{"format": 1, "run": {"method"', "is broken"),
+        ("[1, 2]", "is broken"),
+        ("null", "is broken"),
+        ('{"format": 1}', "is broken"),
+        ("\x00\xff", "is broken"),
+        ('{"format": 7}', "has format 7, this version reads 1"),
+        ("{}", "has format None, this version reads 1"),
+    ],
+)
+@pytest.mark.parametrize("name", ["study.json", "runs/{digest}.json"])
+def test_broken_json(store: Store, name: str, text: str, said: str) -> None:
+    path = store.folder / name.format(digest=RUN.digest)
+    path.write_text(text, encoding="latin-1")
+    before = content(store.folder)
+    with pytest.raises(StoreError, match=said) as told:
+        store.study() if name == "study.json" else store.get(RUN.digest)
+    assert str(path) in str(told.value)
+    assert "\n" not in str(told.value)
+    assert content(store.folder) == before
+
+
+def test_result_with_a_missing_field_is_broken(store: Store) -> None:
+    store.put(finished(), {})
+    path = store.runs / f"{RUN.digest}.json"
+    data = json.loads(path.read_text())
+    del data["errors"]
+    path.write_text(json.dumps(data))
+    with pytest.raises(StoreError, match="is broken"):
+        store.get(RUN.digest)
+
+
+@pytest.mark.parametrize("text", ['{"format": 1', '{"format": 7}'])
+def test_create_does_not_write_over_a_broken_study(store: Store, text: str) -> None:
+    (store.folder / "study.json").write_text(text)
+    with pytest.raises(StoreError):
+        store.create(Study("mms", "title", "verify mms", (), ()))
+    assert (store.folder / "study.json").read_text() == text
+
+
+def test_no_study_folder(tmp_path: Path) -> None:
+    with pytest.raises(StoreError, match="is no study folder: it holds no study.json"):
+        Store(tmp_path).study()
+
+
+def test_folder_below_a_file(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    with pytest.raises(StoreError, match="cannot make the study folder .* give a writable one with --out"):
+        Store(tmp_path / "file" / "study").create(Study("mms", "title", "verify mms", (), ()))
+
+
+def test_missing_arrays(store: Store) -> None:
+    with pytest.raises(StoreError, match="delete it and its .json file to run that run again"):
+        store.arrays(RUN.digest)
+
+
+BROKEN_ARRAYS = pytest.mark.xfail(strict=True, reason="Store.arrays does not catch BadZipFile and EOFError")
+
+
+@pytest.mark.parametrize(
+    "keep",
+    [
+        pytest.param(0, marks=BROKEN_ARRAYS),
+        pytest.param(100, marks=BROKEN_ARRAYS),
+        pytest.param(-30, marks=BROKEN_ARRAYS),
+    ],
+)
+def test_broken_arrays(store: Store, keep: int) -> None:
+    """Cut to nothing, to its first bytes, and without the end of its directory."""
+    store.put(finished(), fixtures.arrays(RUN))
+    path = store.runs / f"{RUN.digest}.npz"
+    path.write_bytes(path.read_bytes()[:keep])
+    with pytest.raises(StoreError, match="cannot read"):
+        store.arrays(RUN.digest)
+
+
+def test_no_pickles_are_read(store: Store) -> None:
+    """A study folder may come from elsewhere: reading it must not run code."""
+    np.savez(store.runs / f"{RUN.digest}.npz", x=np.array([{}], dtype=object))
+    with pytest.raises(StoreError, match="cannot read"):
+        store.arrays(RUN.digest)

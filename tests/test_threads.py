@@ -1,0 +1,200 @@
+"""Slabs and threads: how particles are shared out changes no bit, and how they are presented none but the last."""
+
+from pathlib import Path
+from typing import Any
+
+import numba
+import numpy as np
+import pytest
+
+from cases.library.mms import setup
+from cases.runner import process_pool, run_study
+from cases.store import Store
+from cases.study import Run, Study
+from solver._jit import use_threads
+from solver.boundary import box
+from solver.material.neo_hookean import NeoHookean
+from solver.plugins import available, load
+from solver.slabs import WIDTH, Slabs
+from solver.state import Grid, Particles, fill_rectangle
+from solver.step import Model, RunFailed, advance, particles_to_grid
+
+BASES = available("solver.basis")
+LAW = NeoHookean(E=1.0, nu=0.3, rho0=1.0)
+ARRAYS = ("X", "x", "v", "F", "sigma", "m", "V0", "r0")
+every_basis = pytest.mark.parametrize("name", BASES)
+
+
+def still(p: Particles, t: float) -> None:
+    """No body force."""
+
+
+def channel(name: str, columns: int = 64, rows: int = 12, order: Any = None) -> Model:
+    """A body of 6 x 6 cells near the left end of a channel with cells of side one, presented in the given order."""
+    grid = Grid(1.0, np.zeros(2), np.array([columns, rows], dtype=float))
+    whole = fill_rectangle(grid, 4, LAW.rho0)
+    keep = np.flatnonzero((np.abs(whole.X - [4, rows / 2]) < 3).all(axis=1))
+    keep = keep if order is None else keep[order]
+    body = Particles(whole.X[keep], whole.m[keep], whole.V0[keep], whole.r0[keep])
+    return Model(grid, body, load("solver.basis", name)(), LAW, box(grid, "roller"), 0.05)
+
+
+def fly(m: Model, steps: int) -> Model:
+    """Fast to the right, and stirred, so that the body deforms on its way; the walls stand out of its way."""
+    p = m.particles
+    p.v[:] = np.stack([6 + 0.1 * np.sin(p.X[:, 1]), 0.1 * np.cos(p.X[:, 0])], axis=-1)
+    for _ in range(steps):
+        advance(m, still)
+    return m
+
+
+@every_basis
+def test_order_of_presentation(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Across five slabs: particles shuffled at the start give the same motion to round-off."""
+    sorts, sort = [], Slabs.sort
+    monkeypatch.setattr(Slabs, "sort", lambda self, *args: sorts.append(0) or sort(self, *args))
+    plain = fly(channel(name), 140).particles
+    assert len(sorts) >= 5  # at the start, and again as it moves
+    order = np.random.default_rng(1).permutation(len(plain))
+    shuffled = fly(channel(name, order=order), 140).particles
+    assert np.ptp(plain.x[:, 0]) < 12
+    assert plain.x[:, 0].min() > 5 * WIDTH
+    for array in ARRAYS:
+        a, b = plain.in_initial_order(array)[order], shuffled.in_initial_order(array)
+        np.testing.assert_allclose(b, a, atol=1e-10 * max(1.0, np.abs(a).max()), rtol=0)
+    assert np.abs(plain.F - np.eye(2)).max() > 0.05
+
+
+@every_basis
+def test_rows_travel_together(name: str) -> None:
+    """Whatever the sorting: id is a permutation, and each array is sorted with it, the caller's numbers too."""
+    order = np.random.default_rng(2).permutation(144)
+    m = channel(name, order=order)
+    X = m.particles.in_initial_order("X").copy()
+    m.particles.carried = np.concatenate([m.particles.X, m.particles.id[:, None]], axis=1)
+    fly(m, 60)
+    p = m.particles
+    np.testing.assert_array_equal(np.sort(p.id), np.arange(len(p)))
+    np.testing.assert_array_equal(p.in_initial_order("X"), X)
+    np.testing.assert_array_equal(p.carried, np.concatenate([p.X, p.id[:, None]], axis=1))
+    slab = (np.floor(p.x[:, 0] - m.grid.origin[0]) // m.slabs.width).astype(int)
+    start = m.slabs.start
+    assert start[0] == 0
+    assert start[-1] == len(p)
+    guard = (m.slabs.width - 1) // 2
+    for s in range(len(start) - 1):  # no particle further from its slab than the guard
+        inside = p.x[start[s] : start[s + 1], 0] - m.grid.origin[0]
+        assert (inside >= s * m.slabs.width - guard).all()
+        assert (inside < (s + 1) * m.slabs.width + guard).all()
+    assert slab.max() > 1
+
+
+def test_sorting_keeps_the_order_within_a_slab() -> None:
+    m = channel("mpm")
+    grid, p = m.grid, m.particles
+    p.x[:, 0] = np.random.default_rng(3).uniform(0, 60, len(p))
+    p.id = np.arange(len(p))
+    slabs = Slabs()
+    slabs.sort(grid, p)
+    for s in range(len(slabs.start) - 1):
+        rows = slice(slabs.start[s], slabs.start[s + 1])
+        assert (np.floor(p.x[rows, 0] + 2) // WIDTH == s).all()
+        assert (np.diff(p.id[rows]) > 0).all()
+
+
+@pytest.mark.parametrize("half", [0.6, 3.4, 5.2, 17.0, 30.0])
+def test_wide_domains_widen_the_slabs(half: float) -> None:
+    """CPDI domains of any width that the grid holds: slabs grow, and no mass or momentum is lost."""
+    m = channel("cpdi", columns=62)
+    p = m.particles
+    p.x[:, 0] = np.random.default_rng(4).uniform(half - 1, 63 - half, len(p))
+    p.F[:, 0, 0] = half / 0.25
+    p.v[:] = np.random.default_rng(5).standard_normal(p.v.shape)
+    order, before = np.argsort(p.id), p.v[np.argsort(p.id)].copy()
+    particles_to_grid(m)
+    assert (m.slabs.width > WIDTH) == (half > 3)
+    g, nodes = m.grid, m.grid.nodes
+    assert g.mass.sum() == pytest.approx(p.m.sum(), rel=1e-13)
+    np.testing.assert_allclose(g.momentum.sum(axis=0), p.m @ p.v, atol=1e-12)
+    np.testing.assert_allclose(g.mass @ nodes, p.m @ p.x, rtol=1e-12)  # N of a basis gives back the centre of mass
+    np.testing.assert_array_equal(p.v[np.argsort(p.id)], before)
+    assert len(order) == len(p)
+
+
+def test_a_domain_wider_than_the_grid() -> None:
+    m = channel("cpdi")
+    m.particles.F[0, 0, 0] = 200.0
+    with pytest.raises(RunFailed, match="outside the grid") as caught:
+        particles_to_grid(m)
+    assert (caught.value.step, caught.value.particle) == (0, 0)
+
+
+def test_widening_ends() -> None:
+    """Slabs are widened seven times at most: a domain of 800 of 1000 columns ends the run, it does not loop."""
+    m = channel("cpdi", columns=1100, rows=12)
+    m.particles.x[0, 0] = 600.0
+    m.particles.F[0, 0, 0] = 1600.0
+    with pytest.raises(RunFailed, match="wide"):
+        particles_to_grid(m)
+
+
+def after(method: str, solution: str, threads: int) -> dict[str, Any]:
+    """Bits of a run with 6400 particles, more than one chunk, and of its norms."""
+    use_threads(threads)
+    assert numba.get_num_threads() == threads
+    m, comparison, _ = setup(Run(method, solution, "neo_hookean", 40, 4, 0.4))
+    for _ in range(45):
+        advance(m, comparison)
+    comparison(m.particles, m.time)
+    bits = {array: m.particles.in_initial_order(array).tobytes() for array in ("x", "v", "F", "sigma", "b")}
+    use_threads(1)
+    return bits | {"norms": comparison.norms.errors(), "width": m.slabs.width, "grid": m.grid.given.tobytes()}
+
+
+needs_two = pytest.mark.skipif(numba.config.NUMBA_NUM_THREADS < 2, reason="one processor")
+
+
+@needs_two
+@pytest.mark.parametrize("solution", available("mms.solutions"))
+@every_basis
+def test_threads_give_the_same_bits(name: str, solution: str) -> None:
+    assert after(name, solution, 1) == after(name, solution, 2)
+
+
+@needs_two
+@every_basis
+def test_threads_give_the_same_bits_across_slabs(name: str) -> None:
+    """The body crosses slabs, and particles are sorted anew on the way."""
+    bits = []
+    for threads in (1, 2):
+        use_threads(threads)
+        p = fly(channel(name), 100).particles
+        bits.append([getattr(p, array).tobytes() for array in (*ARRAYS, "id")])
+    use_threads(1)
+    assert bits[0] == bits[1]
+
+
+def test_more_threads_than_there_are() -> None:
+    use_threads(1000)
+    assert numba.get_num_threads() == numba.config.NUMBA_NUM_THREADS
+    use_threads(0)
+    assert numba.get_num_threads() == 1
+
+
+def test_jobs_and_threads_give_the_same_results(tmp_path: Path) -> None:
+    """One worker with one thread against two workers with two threads each."""
+    runs = tuple(Run("cpdi", "axis_aligned", "neo_hookean", cells, 4, 0.4) for cells in (8, 12, 16))
+    study = Study("jobs", "jobs", "", runs, ())
+    found = []
+    for jobs in (1, 2):
+        store = Store(tmp_path / str(jobs))
+        store.create(study)
+        with process_pool(jobs) as pool:
+            found.append(run_study(study, store, pool, threads=jobs))
+        arrays = {run.digest: store.arrays(run.digest) for run in runs}
+        found[-1] = {
+            digest: (result.errors, {k: a.tobytes() for k, a in arrays[digest].items()})
+            for digest, result in found[-1].items()
+        }
+    assert len(found[0]) == 3
+    assert found[0] == found[1]
