@@ -5,10 +5,13 @@ import os
 import threading
 import time
 from collections.abc import Callable, Iterator
-from concurrent.futures import Executor, Future, ProcessPoolExecutor, as_completed
+from concurrent.futures import FIRST_COMPLETED, Executor, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
 from importlib import import_module
+from multiprocessing.queues import SimpleQueue as Queue
 from pathlib import Path
+from typing import ClassVar
 
 from cases.store import Store
 from cases.study import Result, Run, Study
@@ -33,25 +36,49 @@ def perform(run: Run, folder: Path, threads: int) -> Result:
     from solver._jit import use_threads
 
     use_threads(threads)
-    result, arrays = import_module(f"cases.library.{run.case}").execute(run)
+    result, arrays = import_module(f"cases.library.{run.case}").execute(run, Ticker(run.digest))
     Store(folder).put(result, arrays)
     stored: Result = result
     return stored
 
 
-def run_study(
-    study: Study, store: Store, executor: Executor, threads: int, done: Callable[[Result], None] = lambda result: None
-) -> dict[str, Result]:
-    """All Results of the study by digest; those that are stored are read, the others run. `done` hears of each new one.
+class Ticker:
+    """Tells how far a run is, a few times a second at most, to whoever listens: `tell` of this process."""
 
-    Raises RunnerError where a worker dies, StoreError where a Result cannot be written; what is stored stays.
+    tell: ClassVar[Callable[[tuple[str, float]], None]] = staticmethod(lambda news: None)
+    PAUSE = 0.25  # seconds
+
+    def __init__(self, digest: str) -> None:
+        self.digest, self.last = digest, time.monotonic()
+
+    def __call__(self, share: float) -> None:
+        """The run has done this share of its steps."""
+        now = time.monotonic()
+        if now - self.last > self.PAUSE:
+            self.last = now
+            type(self).tell((self.digest, share))
+
+
+def run_study(
+    study: Study,
+    store: Store,
+    executor: Executor,
+    threads: int,
+    done: Callable[[Result], None] = lambda result: None,
+    poll: Callable[[], None] = lambda: None,
+) -> dict[str, Result]:
+    """All Results of the study by digest; those that are stored are read, the others run.
+
+    `done` hears of each new Result, `poll` is called a few times a second. Raises RunnerError where a worker dies,
+    StoreError where a Result cannot be written; what is stored stays.
     """
-    futures: dict[Future[Result], Run] = {
-        executor.submit(perform, run, store.folder, threads): run for run in pending(study, store)
-    }
+    waiting = {executor.submit(perform, run, store.folder, threads) for run in pending(study, store)}
     try:
-        for future in as_completed(futures):
-            done(future.result())
+        while waiting:
+            finished, waiting = wait(waiting, timeout=Ticker.PAUSE, return_when=FIRST_COMPLETED)
+            poll()
+            for future in finished:
+                done(future.result())
     except BrokenProcessPool as error:
         raise RunnerError(
             "a worker process died, perhaps for want of memory; try --jobs 1; stored runs are kept"
@@ -59,25 +86,42 @@ def run_study(
     except MemoryError as error:
         raise RunnerError("not enough memory; try --jobs 1 or fewer cells; stored runs are kept") from error
     finally:
-        for future in futures:
+        for future in waiting:
             future.cancel()
     return stored(study, store)
 
 
 def stored(study: Study, store: Store) -> dict[str, Result]:
     """The Results that the store holds for the study."""
-    found: Iterator[tuple[str, Result | None]] = ((run.digest, store.get(run.digest)) for run in study.runs)
+    found = ((run.digest, store.get(run.digest)) for run in study.runs)
     return {digest: result for digest, result in found if result is not None}
 
 
-def process_pool(jobs: int) -> ProcessPoolExecutor:
-    """Worker processes that end with this one. Spawned: a fork of a process that has used OpenMP threads hangs."""
+@contextmanager
+def process_pool(jobs: int) -> Iterator[tuple[ProcessPoolExecutor, Callable[[], list[tuple[str, float]]]]]:
+    """Worker processes that end with this one, and a function that gives their news since it was last called.
+
+    Spawned: a fork of a process that has used OpenMP threads hangs.
+    """
     context = multiprocessing.get_context("spawn")
-    return ProcessPoolExecutor(jobs, mp_context=context, initializer=end_with_parent, initargs=(os.getpid(),))
+    news: Queue[tuple[str, float]] = context.SimpleQueue()
+
+    def heard() -> list[tuple[str, float]]:
+        items = []
+        while not news.empty():
+            items.append(news.get())
+        return items
+
+    with ProcessPoolExecutor(jobs, mp_context=context, initializer=begin, initargs=(os.getpid(), news)) as executor:
+        yield executor, heard
 
 
-def end_with_parent(parent: int) -> None:
-    """Watch the parent process: a worker that outlives it would do a run that its successor does too."""
+def begin(parent: int, news: "Queue[tuple[str, float]]") -> None:
+    """First thing in a worker: where to tell news, and a watch over the parent.
+
+    A worker that outlived its parent would do a run that the parent's successor does too.
+    """
+    Ticker.tell = staticmethod(news.put)
 
     def watch() -> None:
         while os.getppid() == parent:

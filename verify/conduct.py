@@ -68,15 +68,16 @@ def conduct(study: Study, settings: Settings) -> int:
 
 def compute(study: Study, store: "Store", settings: Settings) -> dict[str, Result]:
     """The Results of the study; in this process if there is little to do or one job is asked for."""
-    from cases.runner import cost, pending, perform, process_pool, run_study, stored
+    from cases.runner import Ticker, cost, pending, perform, process_pool, run_study, stored
     from verify.progress import progress
 
     waiting = pending(study, store)
-    jobs = min(settings.jobs or os.cpu_count() or 1, max(1, len(waiting)))
-    with progress(waiting, cost) as done:
+    jobs = min(settings.jobs or max(1, (os.cpu_count() or 1) // settings.threads), max(1, len(waiting)))
+    with progress(waiting, cost) as bar:
         if jobs > 1 and sum(map(cost, waiting)) > SMALL:
-            with process_pool(jobs) as executor:
-                return run_study(study, store, executor, settings.threads, done)
+            with process_pool(jobs) as (executor, heard):
+                return run_study(study, store, executor, settings.threads, bar.done, lambda: bar.hear(heard()))
+        Ticker.tell = staticmethod(lambda news: bar.hear([news]))
         for run in waiting:
-            done(perform(run, settings.folder, settings.threads))
+            bar.done(perform(run, settings.folder, settings.threads))
     return stored(study, store)

@@ -38,7 +38,7 @@ def mms(
     courant: Annotated[float, typer.Option(help="C dt / dx, C the reference speed of the solution.")] = 0.4,
     flip: Annotated[float, typer.Option(help="Share of FLIP in the particle velocity, the rest is PIC.")] = 1.0,
     staggered: Annotated[bool, typer.Option(help="Start v half a step behind x.")] = True,
-    jobs: Annotated[int | None, typer.Option(help="Runs at a time.", show_default="number of processors")] = None,
+    jobs: Annotated[int | None, typer.Option(help="Runs at a time.", show_default="processors / threads")] = None,
     threads: Annotated[int, typer.Option(help="Threads of one run; any number gives the same bits.")] = 1,
     quick: Annotated[bool, typer.Option("--quick", help="8,16,32,64 cells with 4 particles each.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Run time steps above the stability limit too.")] = False,

@@ -3,35 +3,57 @@
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from typing import Any
 
 from cases.study import Result, Run
 
 
+class Silent:
+    """Hears and says nothing."""
+
+    def hear(self, news: Sequence[tuple[str, float]]) -> None:
+        """Digests of runs under way with the share that is done."""
+
+    def done(self, result: Result) -> None:
+        """A run has ended."""
+
+
+class Bar(Silent):
+    """Grows with what the runs cost, not with their number."""
+
+    def __init__(self, bar: Any, waiting: Sequence[Run], cost: Callable[[Run], float]) -> None:
+        self.bar, self.costs, self.shares = bar, {run.digest: cost(run) for run in waiting}, dict[str, float]()
+        self.task = bar.add_task("", total=sum(self.costs.values()), runs=0, of=len(waiting), last="")
+        self.finished = 0
+
+    def hear(self, news: Sequence[tuple[str, float]]) -> None:
+        """Move the bar."""
+        self.shares.update(news)
+        self.bar.update(self.task, completed=sum(self.costs[digest] * share for digest, share in self.shares.items()))
+
+    def done(self, result: Result) -> None:
+        """Name the run that has ended."""
+        run = result.run
+        self.finished += 1
+        last = f"{run.method} {run.cells}² cells, {run.ppc} per cell: {result.status}"
+        self.bar.update(self.task, runs=self.finished, last=last)
+        self.hear([(result.digest, 1.0)])
+
+
 @contextmanager
-def progress(waiting: Sequence[Run], cost: Callable[[Run], float]) -> Iterator[Callable[[Result], None]]:
-    """Yields what is to be told of each finished run; the bar grows with what the runs cost, not with their number."""
+def progress(waiting: Sequence[Run], cost: Callable[[Run], float]) -> Iterator[Silent]:
+    """A Bar on a terminal, and Silent elsewhere or where nothing is to be done."""
     if not waiting or not sys.stderr.isatty():
-        yield lambda result: None
+        yield Silent()
         return
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
     columns = (
         TextColumn("{task.percentage:>3.0f} %"),
-        BarColumn(),
-        TextColumn("{task.fields[runs]}/" + str(len(waiting)) + " runs"),
-        TimeRemainingColumn(elapsed_when_finished=True),
-        TextColumn("{task.fields[last]}"),
+        BarColumn(bar_width=24),
+        TimeRemainingColumn(),
+        TextColumn("left, {task.fields[runs]} of {task.fields[of]} runs  {task.fields[last]}"),
     )
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("", total=sum(map(cost, waiting)), runs=0, last="")
-        finished = 0
-
-        def done(result: Result) -> None:
-            nonlocal finished
-            finished += 1
-            run = result.run
-            last = f"{run.method} {run.cells}² cells, {run.ppc} per cell: {result.failure or 'finished'}"
-            bar.update(task, advance=cost(run), runs=finished, last=last)
-
-        yield done
+        yield Bar(bar, waiting, cost)

@@ -3,6 +3,7 @@
 import resource
 import sys
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import ceil, sqrt
 from typing import Any
@@ -67,15 +68,16 @@ def setup(run: Run) -> tuple[Model, Comparison, int]:
     return model, Comparison(exact, norms, new_shares(particles), behind), steps
 
 
-def execute(run: Run) -> tuple[Result, Arrays]:
-    """Run to the end, or to where it cannot go on: a failed run is a Result."""
+def execute(run: Run, tick: Callable[[float], None] = lambda share: None) -> tuple[Result, Arrays]:
+    """Run to the end, or to where it cannot go on: a failed run is a Result. `tick` hears the share that is done."""
     model, comparison, steps = setup(run)
     failure, started = None, time.perf_counter()
     try:
         if not run.force:
             check_time_step(model)
-        for _ in range(steps):
+        for step in range(steps):
             advance(model, comparison)
+            tick((step + 1) / steps)
         comparison(model.particles, model.time)
     except RunFailed as reason:
         failure = Failure(reason.reason, reason.step, reason.particle, reason.cell)
