@@ -14,7 +14,7 @@ from cases.study import Result, Study
 if TYPE_CHECKING:
     from cases.store import Store
 
-SMALL = 2e6  # cost below which worker processes take longer to start than they save
+SMALL = 4e7  # cost below which worker processes take longer to start than they save
 
 
 @dataclass(frozen=True)
