@@ -1,6 +1,7 @@
 """The run store: what is written is read back equal, is never half there, and is lost by nothing that goes wrong."""
 
 import errno
+import gc
 import json
 import os
 from dataclasses import fields, replace
@@ -178,7 +179,7 @@ def test_cut_between_arrays_and_result_leaves_the_run_to_be_done(store: Store, m
     assert store.get(RUN.digest) is None
 
 
-@pytest.mark.parametrize("call", ["os.fsync", "os.replace", "tempfile.mkstemp"])
+@pytest.mark.parametrize("call", ["os.fsync", "os.replace", "pathlib.Path.open"])
 def test_disk_full(store: Store, monkeypatch: pytest.MonkeyPatch, call: str) -> None:
     store.put(finished(), fixtures.arrays(RUN))
     before = content(store.folder)
@@ -189,13 +190,6 @@ def test_disk_full(store: Store, monkeypatch: pytest.MonkeyPatch, call: str) -> 
     monkeypatch.undo()
     assert content(store.folder) == before
     assert store.get(RUN.digest) == finished()
-
-
-@pytest.mark.xfail(raises=OSError, strict=True, reason="Store.put lets an OSError of its buffer through")
-def test_disk_full_while_packing_arrays(store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("numpy.savez", no_space)
-    with pytest.raises(StoreError):
-        store.put(finished(), {})
 
 
 # ---- what is broken is named and left as it is
@@ -245,39 +239,36 @@ def test_create_does_not_write_over_a_broken_study(store: Store, text: str) -> N
 
 
 def test_no_study_folder(tmp_path: Path) -> None:
-    with pytest.raises(StoreError, match="is no study folder: it holds no study.json"):
+    with pytest.raises(StoreError, match=r"is no study folder: it holds no study\.json"):
         Store(tmp_path).study()
 
 
 def test_folder_below_a_file(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
-    with pytest.raises(StoreError, match="cannot make the study folder .* give a writable one with --out"):
+    with pytest.raises(StoreError, match=r"cannot make the study folder .* give a writable one with --out"):
         Store(tmp_path / "file" / "study").create(Study("mms", "title", "verify mms", (), ()))
 
 
 def test_missing_arrays(store: Store) -> None:
-    with pytest.raises(StoreError, match="delete it and its .json file to run that run again"):
+    with pytest.raises(StoreError, match=r"delete it and its \.json file to run that run again"):
         store.arrays(RUN.digest)
 
 
-BROKEN_ARRAYS = pytest.mark.xfail(strict=True, reason="Store.arrays does not catch BadZipFile and EOFError")
-
-
-@pytest.mark.parametrize(
-    "keep",
-    [
-        pytest.param(0, marks=BROKEN_ARRAYS),
-        pytest.param(100, marks=BROKEN_ARRAYS),
-        pytest.param(-30, marks=BROKEN_ARRAYS),
-    ],
-)
+@pytest.mark.xfail(strict=True, reason="Store.arrays does not catch BadZipFile and EOFError, and leaves the file open")
+@pytest.mark.parametrize("keep", [0, 100, -30])
 def test_broken_arrays(store: Store, keep: int) -> None:
     """Cut to nothing, to its first bytes, and without the end of its directory."""
     store.put(finished(), fixtures.arrays(RUN))
     path = store.runs / f"{RUN.digest}.npz"
     path.write_bytes(path.read_bytes()[:keep])
-    with pytest.raises(StoreError, match="cannot read"):
+    with pytest.raises(Exception) as told:  # noqa: PT011 - which one is the question
         store.arrays(RUN.digest)
+    kind, text = told.type, str(told.value)
+    del told  # a file left open is found now, in this test, and not in the next one
+    gc.collect()
+    assert kind is StoreError
+    assert text.startswith(f"cannot read {path}")
+    assert "\n" not in text
 
 
 def test_no_pickles_are_read(store: Store) -> None:
