@@ -1,6 +1,6 @@
 """Builds the MMS study from what is asked for: its runs, and what it declares to judge and to show."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from math import isqrt
 from typing import Any
 
@@ -33,13 +33,13 @@ class Sweep:
         for count in self.cells:
             if not 2 <= count <= 4096:
                 raise ValueError(
-                    f"{count} cells cannot be run; choose whole numbers from 2 to 4096, such as 8,16,32,64"
+                    f"cells = {count} cannot be run; choose whole numbers from 2 to 4096, such as 8,16,32,64"
                 )
         for count in self.ppc:
             if count < 1 or isqrt(count) ** 2 != count:
                 raise ValueError(f"{count} particles per cell is no square number; choose from 1, 4, 9, 16, ...")
-        if not 0 < self.courant < float("inf"):
-            raise ValueError(f"courant = {self.courant} must be above zero; 0.4 is usual")
+        if not 1e-3 <= self.courant <= 10:
+            raise ValueError(f"courant = {self.courant} cannot be run; choose 0.001 to 10, 0.4 is usual")
         if not 0 <= self.flip <= 1:
             raise ValueError(f"flip = {self.flip} must lie between 0 (PIC) and 1 (FLIP)")
         create(SOLUTIONS, self.solution)
@@ -91,9 +91,8 @@ def belongs(declared: Declared, run: Run) -> bool:
 def canonical(package: str, specification: str) -> str:
     """The specification with only the parameters that differ from their defaults, sorted: one name for one thing."""
     plugin: Any = create(package, specification)
-    defaults = {key: item.default for key, item in plugin.__dataclass_fields__.items()}
-    changed = {
-        key: getattr(plugin, key) for key, default in sorted(defaults.items()) if getattr(plugin, key) != default
-    }
-    name = specification.partition(":")[0]
-    return name + (":" + ",".join(f"{key}={value:g}" for key, value in changed.items()) if changed else "")
+    values = {item.name: (getattr(plugin, item.name), item.default) for item in fields(plugin)}
+    changed = [
+        f"{key}={repr(value).removesuffix('.0')}" for key, (value, usual) in sorted(values.items()) if value != usual
+    ]
+    return ":".join([specification.partition(":")[0], *filter(None, [",".join(changed)])])

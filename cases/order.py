@@ -121,7 +121,7 @@ def _gate(q: Quantity) -> str:
     """Why there is nothing to judge yet, with the run that would decide; empty if every gate is open."""
     fit, failed = q.fit, [level for level in q.ordered if level.ended]
     if len(q.levels) < LEVELS:
-        return f"{len(q.levels)} levels cannot show that the order has settled: {q.finer}"
+        return f"with fewer than {LEVELS} levels nothing shows that the order has settled: {q.finer}"
     if failed:
         return f"there is no error at h={_inverse(failed[0].h)} ({failed[0].ended}): that run has to finish"
     if fit.lowest <= CLEAR * q.floor:
@@ -201,7 +201,8 @@ def _non_convergence(q: Quantity, confidence: float) -> Finding:
         return PASS, f"does not converge, as expected: {', and '.join(seen)}"
     if len(h) >= LEVELS and slope and min(slope.interval(confidence)[0], *q.fit.orders) > CONVERGES:
         return FAIL, f"a surprise: not expected to converge, the error fell {_path(q.fit)}, order {slope.value:.2f}"
-    return INCONCLUSIVE, f"neither growth nor convergence: the error went {_path(q.fit)}: {q.finer}"
+    went = f"the error went {_path(q.fit)}" if h[1:].size else f"one level finished, h={_inverse(h[0])}"
+    return INCONCLUSIVE, f"neither growth nor convergence: {went}: {q.finer}"
 
 
 def _path(fit: Fit, start: int = 0) -> str:

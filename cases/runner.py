@@ -2,6 +2,7 @@
 
 import multiprocessing
 import os
+import signal
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -112,8 +113,15 @@ def process_pool(jobs: int) -> Iterator[tuple[ProcessPoolExecutor, Callable[[], 
             items.append(news.get())
         return items
 
-    with ProcessPoolExecutor(jobs, mp_context=context, initializer=begin, initargs=(os.getpid(), news)) as executor:
+    executor = ProcessPoolExecutor(jobs, mp_context=context, initializer=begin, initargs=(os.getpid(), news))
+    try:
         yield executor, heard
+    except BaseException:  # Ctrl-C among them: nobody waits for runs whose Results nobody will take
+        for worker in multiprocessing.active_children():
+            worker.terminate()
+        raise
+    finally:
+        executor.shutdown(cancel_futures=True)
 
 
 def begin(parent: int, news: "Queue[tuple[str, float]]") -> None:
@@ -122,6 +130,7 @@ def begin(parent: int, news: "Queue[tuple[str, float]]") -> None:
     A worker that outlived its parent would do a run that the parent's successor does too.
     """
     Ticker.tell = staticmethod(news.put)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C goes to the whole group; the parent ends its workers
 
     def watch() -> None:
         while os.getppid() == parent:

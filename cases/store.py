@@ -9,9 +9,11 @@ import io
 import json
 import os
 import threading
+import time
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
+from zipfile import BadZipFile
 
 import numpy as np
 from pydantic import TypeAdapter, ValidationError
@@ -19,6 +21,9 @@ from pydantic import TypeAdapter, ValidationError
 from cases.study import FORMAT, Result, Study
 
 Arrays = dict[str, "np.ndarray[Any, np.dtype[np.float32]]"]
+
+
+HOUR = 3600.0
 
 
 class StoreError(Exception):
@@ -40,6 +45,9 @@ class Store:
             raise StoreError(
                 f"cannot make the study folder {self.folder}: {error.strerror}; give a writable one with --out"
             ) from error
+        for leftover in self.runs.glob(".*"):  # of a process that was killed while it wrote
+            if time.time() - leftover.stat().st_mtime > HOUR:
+                leftover.unlink(missing_ok=True)
         if (self.folder / "study.json").exists():
             self.study()
         self._write(self.folder / "study.json", json.dumps(asdict(study), indent=1).encode())
@@ -70,9 +78,9 @@ class Store:
         """The particles of that run at its last step."""
         path = self.runs / f"{digest}.npz"
         try:
-            with np.load(path, allow_pickle=False) as stored:
+            with path.open("rb") as file, np.load(file, allow_pickle=False) as stored:
                 return {name: stored[name] for name in stored.files}
-        except (OSError, ValueError) as error:
+        except (OSError, ValueError, EOFError, BadZipFile) as error:
             raise StoreError(
                 f"cannot read {path}: {error}; delete it and its .json file to run that run again"
             ) from error

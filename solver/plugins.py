@@ -1,8 +1,12 @@
 """A plug-in is a file: its name is the word on the command line, and the class in it has that name in CamelCase."""
 
+from dataclasses import fields
 from importlib import import_module
+from math import isfinite
 from pathlib import Path
 from typing import Any
+
+KINDS = {"solver.basis": "method", "solver.material": "material", "mms.solutions": "solution", "cases.library": "case"}
 
 
 def available(package: str) -> list[str]:
@@ -14,7 +18,7 @@ def available(package: str) -> list[str]:
 def load(package: str, name: str) -> Any:
     """The class of plug-in `name`. Raises ValueError that lists the choices where there is no such file."""
     if name not in available(package):
-        raise ValueError(f"no {package.rpartition('.')[2]} named {name!r}; choose from {', '.join(available(package))}")
+        raise ValueError(f"no {KINDS.get(package, 'plug-in')} {name!r}; choose from {', '.join(available(package))}")
     return getattr(import_module(f"{package}.{name}"), camel(name))
 
 
@@ -30,14 +34,24 @@ def create(package: str, specification: str) -> Any:
     """
     name, _, rest = specification.partition(":")
     plugin = load(package, name)
-    allowed = list(plugin.__dataclass_fields__)
+    allowed = [item.name for item in fields(plugin)]
     parameters: dict[str, float] = {}
     for item in filter(None, rest.split(",")):
         key, _, value = item.partition("=")
         if key not in allowed:
             raise ValueError(f"{name} has no parameter {key!r}; it has {', '.join(allowed) or 'none'}")
-        try:
-            parameters[key] = float(value)
-        except ValueError:
-            raise ValueError(f"{name}: {key}={value!r} is no number") from None
+        if key in parameters:
+            raise ValueError(f"{name}: {key} is given twice")
+        parameters[key] = number(name, key, value)
     return plugin(**parameters)
+
+
+def number(name: str, key: str, value: str) -> float:
+    """The value of a parameter. Raises ValueError for what is no finite number."""
+    try:
+        parsed = float(value)
+    except ValueError:
+        raise ValueError(f"{name}: {key}={value!r} is no number") from None
+    if not isfinite(parsed):
+        raise ValueError(f"{name}: {key}={value} is not finite")
+    return parsed

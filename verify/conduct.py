@@ -38,6 +38,8 @@ def usage() -> Iterator[None]:
         yield
     except (ValueError, StoreError, RunnerError) as error:
         raise typer.TyperException(str(error)) from error
+    except MemoryError as error:
+        raise typer.TyperException("not enough memory; try fewer cells or --jobs 1; stored runs are kept") from error
     except OSError as error:
         raise typer.TyperException(f"{error.strerror or error}: {error.filename or ''}") from error
 
@@ -49,9 +51,11 @@ def conduct(study: Study, settings: Settings) -> int:
         from cases.verdicts import exit_code, findings
         from reports.render import render
         from verify.document import document
-        from verify.junit import write_junit
+        from verify.junit import check_junit, write_junit
+        from verify.output import printing
         from verify.table import show
 
+        check_junit(settings.junit)
         store = Store(settings.folder)
         store.create(study)
         results = compute(study, store, settings)
@@ -59,10 +63,11 @@ def conduct(study: Study, settings: Settings) -> int:
         page = render(settings.folder)
         if settings.junit:
             write_junit(settings.junit, study, found)
-        if settings.json_output:
-            typer.echo(document(study, found, results, page))
-        else:
-            show(study, found, page)
+        with printing():
+            if settings.json_output:
+                typer.echo(document(study, found, results, page))
+            else:
+                show(study, found, page)
     return exit_code(found)
 
 

@@ -1,5 +1,6 @@
 """The verdicts as JUnit XML, for CI servers: a test a judged quantity; what is not a PASS is a failure or an error."""
 
+import os
 from collections.abc import Sequence
 from pathlib import Path
 from xml.etree import ElementTree
@@ -7,6 +8,18 @@ from xml.etree import ElementTree
 from cases.records import Outcome
 from cases.study import Study
 from cases.verdicts import Finding
+
+
+def check_junit(path: Path | None) -> None:
+    """Raise ValueError now, and not when all runs are done, where the file cannot be written."""
+    if path is None:
+        return
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise ValueError(f"cannot write --junit {path}: {path.parent} is no folder that can be made") from error
+    if path.is_dir() or not os.access(path.parent, os.W_OK):
+        raise ValueError(f"cannot write --junit {path}: name a file in a folder that can be written")
 
 
 def write_junit(path: Path, study: Study, found: Sequence[Finding]) -> None:
@@ -25,5 +38,4 @@ def write_junit(path: Path, study: Study, found: Sequence[Finding]) -> None:
     suite.set("errors", str(outcomes.count(Outcome.ERROR)))
     suite.set("failures", str(outcomes.count(Outcome.FAIL) + outcomes.count(Outcome.INCONCLUSIVE)))
     ElementTree.indent(suite)
-    path.parent.mkdir(parents=True, exist_ok=True)
     ElementTree.ElementTree(suite).write(path, encoding="utf-8", xml_declaration=True)

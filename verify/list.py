@@ -6,6 +6,7 @@ from pathlib import Path
 import typer
 
 from solver.plugins import available
+from verify.output import printing
 
 KINDS = {
     "cases": "cases.library",
@@ -17,10 +18,11 @@ KINDS = {
 
 def list_plugins() -> None:
     """List cases, methods, solutions and materials with a line about each."""
-    for kind, package in KINDS.items():
-        typer.echo(kind)
-        for name in available(package):
-            typer.echo(f"  {name:16}{summary(package, name)}")
+    with printing():
+        for kind, package in KINDS.items():
+            typer.echo(kind)
+            for name in available(package):
+                typer.echo(f"  {name:16}{summary(package, name)}")
 
 
 def summary(package: str, name: str) -> str:

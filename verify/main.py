@@ -1,6 +1,7 @@
 """The command `verify`: one file a subcommand, each a few lines that call down. Nothing heavy is imported here."""
 
 import sys
+import traceback
 from typing import Annotated
 
 import typer
@@ -9,7 +10,7 @@ from verify.list import list_plugins
 from verify.mms import mms
 from verify.report import report
 
-USAGE = 2
+USAGE, STOPPED = 2, 130
 
 app = typer.Typer(name="verify", rich_markup_mode=None, pretty_exceptions_enable=False)
 app.command("mms")(mms)
@@ -43,22 +44,28 @@ def root(
 
 
 def main() -> None:
-    """Entry point: what is wrong in the input is one line on standard error, and exit code 2."""
+    """Entry point: what is wrong in the input is one line on standard error, and exit code 2.
+
+    A defect of this program ends with 2 too, and with its traceback: 1 would read as a verdict.
+    """
     try:
         code = app(standalone_mode=False)
     except typer.TyperException as error:
         code = complain(error.format_message() if hasattr(error, "format_message") else str(error))
     except (typer.Abort, KeyboardInterrupt):
+        code = STOPPED
+    except Exception:
+        traceback.print_exc()
+        code = complain("this is a defect of verify, not of what it verifies; please report it with the lines above")
+    if code == STOPPED:
         complain("stopped; what was finished is stored, and the same command goes on from there")
-        code = 130
-    except BrokenPipeError:
-        sys.stderr.close()  # nobody listens any more: no traceback at exit either
-        code = 0
     sys.exit(code if isinstance(code, int) else 0)
 
 
 def complain(message: str) -> int:
     """One line on standard error."""
+    if message.startswith("No such command"):
+        message = f"{message} Choose from {', '.join(str(command.name) for command in app.registered_commands)}."
     print(f"verify: {' '.join(message.split())}", file=sys.stderr)
     return USAGE
 

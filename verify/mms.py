@@ -10,6 +10,7 @@ import typer
 from verify.choices import choices, completion, integers
 
 METHODS, SOLUTIONS, MATERIALS = "solver.basis", "mms.solutions", "solver.material"
+USUAL = {"cells": "8,16,32,64,128", "ppc": "1,4,9"}
 QUICK = {"cells": "8,16,32,64", "ppc": "4"}
 
 
@@ -27,8 +28,12 @@ def mms(
             autocompletion=completion(SOLUTIONS),
         ),
     ] = "axis_aligned",
-    cells: Annotated[str, typer.Option(help="Cells along a side of the domain.")] = "8,16,32,64,128",
-    ppc: Annotated[str, typer.Option(help="Particles per cell, square numbers.")] = "1,4,9",
+    cells: Annotated[
+        str | None, typer.Option(help="Cells along a side of the domain.", show_default=USUAL["cells"])
+    ] = None,
+    ppc: Annotated[
+        str | None, typer.Option(help="Particles per cell, square numbers.", show_default=USUAL["ppc"])
+    ] = None,
     material: Annotated[
         str,
         typer.Option(
@@ -51,8 +56,8 @@ def mms(
     """Convergence of MPM and CPDI to a manufactured solution: errors, observed orders, verdict, HTML report."""
     from verify.conduct import Settings, conduct, usage
 
-    if quick:
-        cells, ppc = QUICK["cells"], QUICK["ppc"]
+    default = QUICK if quick else USUAL
+    cells, ppc = (default[key] if given is None else given for key, given in (("cells", cells), ("ppc", ppc)))
     methods = tuple(dict.fromkeys(method or ["cpdi"]))
     with usage():
         from cases.mms_study import Sweep, build

@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from verify.output import printing
+
 
 def report(folder: Annotated[Path, typer.Argument(metavar="DIR", help="Study folder.")]) -> None:
     """Make the HTML report, figures and tables of a stored study again, without running anything."""
@@ -13,4 +15,6 @@ def report(folder: Annotated[Path, typer.Argument(metavar="DIR", help="Study fol
     with usage():
         from reports.render import render
 
-        typer.echo(f"report: {render(folder)}")
+        page = render(folder)
+    with printing():
+        typer.echo(f"report: {page}")

@@ -14,9 +14,17 @@ STYLES = {"PASS": "bold green", "FAIL": "bold red", "INCONCLUSIVE": "bold yellow
 ALWAYS = ("u", "rms")
 
 
+class Listened(Console):
+    """Rich ends the program when nobody reads, with the exit code of a FAIL; this leaves it to verify.output."""
+
+    def on_broken_pipe(self) -> None:
+        """Tell the caller."""
+        raise BrokenPipeError
+
+
 def show(study: Study, found: Sequence[Finding], report: Path, console: Console | None = None) -> None:
     """Print to standard output, as wide as the terminal is and 100 columns where there is none."""
-    out = console or Console(highlight=False, soft_wrap=False)
+    out = console or Listened(highlight=False, soft_wrap=False)
     if not out.is_terminal:
         out.width = max(out.width, 100)
     out.print(f"\n[bold]{study.title}[/bold]")
@@ -53,9 +61,14 @@ def rows(finding: Finding) -> Iterator[tuple[str, ...]]:
         if level.ended:
             yield (*first, cells, "-", "", level.ended)
         else:
-            yield (*first, cells, f"{level.errors[0]:.3e}", f"{next(orders):.2f}" if earlier else "", "")
+            yield (*first, cells, f"{level.errors[0]:.3e}", order(next(orders, None)) if earlier else "", "")
             earlier = True
         first = ("", "", "")
+
+
+def order(local: float | None) -> str:
+    """A local order; none where an error is zero."""
+    return "" if local is None else f"{local:.2f}"
 
 
 def sentence(finding: Finding) -> Text:
