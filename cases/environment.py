@@ -26,10 +26,17 @@ def environment() -> dict[str, str]:
 def commit() -> str:
     """Commit of the sources, with `+` where they are changed; `unknown` outside a checkout."""
     try:
-        run = ["git", "-C", str(TOP), "describe", "--always", "--dirty=+", "--abbrev=12", "--exclude=*"]
-        return subprocess.run(run, capture_output=True, text=True, check=True, timeout=10).stdout.strip()
+        if git("rev-parse", "--show-toplevel") != str(TOP):  # installed inside another project's checkout
+            return "unknown"
+        return git("describe", "--always", "--dirty=+", "--abbrev=12", "--exclude=*")
     except (OSError, subprocess.SubprocessError):
         return "unknown"
+
+
+def git(*arguments: str) -> str:
+    """What git prints, run in the folder of the sources."""
+    run = ["git", "-C", str(TOP), *arguments]
+    return subprocess.run(run, capture_output=True, text=True, check=True, timeout=10).stdout.strip()
 
 
 def processor() -> str:

@@ -1,5 +1,6 @@
 """Builds the MMS study from what is asked for: its runs, and what it declares to judge and to show."""
 
+import re
 from dataclasses import dataclass, fields, replace
 from math import isqrt
 from typing import Any
@@ -24,6 +25,16 @@ class Sweep:
     flip: float = 1.0
     staggered: bool = True
     force: bool = False
+
+    @property
+    def name(self) -> str:
+        """Name of the study: its methods and what is not as usual, so that another sweep gets a folder of its own."""
+        changed = {
+            item.name: getattr(self, item.name) for item in fields(self) if getattr(self, item.name) != item.default
+        }
+        words = ["mms", *self.methods, *(str(changed.pop(key)) for key in ("solution", "material") if key in changed)]
+        words += [f"{key}-{value}" for key, value in changed.items() if key != "methods"]
+        return re.sub(r"[^A-Za-z0-9.]+", "-", " ".join(words)).strip("-")[:120]
 
     def check(self) -> None:
         """Raise ValueError with one line that says what is wrong and what is allowed."""
@@ -51,7 +62,7 @@ def build(sweep: Sweep, command: str, name: str) -> Study:
     sweep.check()
     solution, material = canonical(SOLUTIONS, sweep.solution), canonical(MATERIALS, sweep.material)
     declared = tuple(
-        declare(method, solution, material, ppc, quantity, norm)
+        declare(sweep, (method, solution, material), ppc, quantity, norm)
         for method in sweep.methods
         for ppc in sorted(set(sweep.ppc))
         for quantity in QUANTITIES
@@ -72,10 +83,11 @@ def build(sweep: Sweep, command: str, name: str) -> Study:
     return Study(name, title, command, tuple(runs + halved), declared)
 
 
-def declare(method: str, solution: str, material: str, ppc: int, quantity: str, norm: str) -> Declared:
-    """A quantity with its registered expectation; judged if it has one."""
-    expectation = expected(method, solution, material, ppc, quantity, norm)
-    return Declared(method, solution, ppc, quantity, norm, expectation is not None, expectation)
+def declare(sweep: Sweep, names: tuple[str, str, str], ppc: int, quantity: str, norm: str) -> Declared:
+    """A quantity with its registered expectation; judged if it has one. Of PIC blends nothing is registered."""
+    usual = sweep.courant == Sweep.courant and sweep.staggered
+    expectation = expected(*names, ppc, quantity, norm, usual) if sweep.flip == 1 else None
+    return Declared(names[0], names[1], ppc, quantity, norm, expectation is not None, expectation)
 
 
 def converges(declared: Declared) -> bool:

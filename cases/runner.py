@@ -6,16 +6,18 @@ import signal
 import threading
 import time
 from collections.abc import Callable, Iterator
-from concurrent.futures import FIRST_COMPLETED, Executor, ProcessPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from importlib import import_module
 from multiprocessing.queues import SimpleQueue as Queue
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar, TypeVar
 
-from cases.store import Store
+from cases.store import Store, StoreError
 from cases.study import Result, Run, Study
+
+T = TypeVar("T")
 
 
 class RunnerError(Exception):
@@ -73,23 +75,43 @@ def run_study(
     `done` hears of each new Result, `poll` is called a few times a second. Raises RunnerError where a worker dies,
     StoreError where a Result cannot be written; what is stored stays.
     """
-    waiting = {executor.submit(perform, run, store.folder, threads) for run in pending(study, store)}
+    waiting = {executor.submit(perform, run, store.folder, threads): run for run in pending(study, store)}
+    lost: list[tuple[Run, Exception]] = []
     try:
         while waiting:
-            finished, waiting = wait(waiting, timeout=Ticker.PAUSE, return_when=FIRST_COMPLETED)
+            finished, _ = wait(waiting, timeout=Ticker.PAUSE, return_when=FIRST_COMPLETED)
             poll()
             for future in finished:
-                done(future.result())
+                run = waiting.pop(future)
+                try:
+                    done(future.result())
+                except (StoreError, BrokenProcessPool, MemoryError):
+                    raise
+                except Exception as error:  # a defect of ours in one run: the sweep goes on, and says so at its end
+                    lost.append((run, error))
     except BrokenProcessPool as error:
         raise RunnerError(
             "a worker process died, perhaps for want of memory; try --jobs 1; stored runs are kept"
         ) from error
     except MemoryError as error:
         raise RunnerError("not enough memory; try --jobs 1 or fewer cells; stored runs are kept") from error
-    finally:
-        for future in waiting:
-            future.cancel()
+    if lost:
+        (run, defect), more = lost[0], f", and in {len(lost) - 1} more" if lost[1:] else ""
+        raise RunnerError(f"a defect of verify in {run}{more}: {defect!r}; the other runs are stored") from defect
     return stored(study, store)
+
+
+class InProcess(Executor):
+    """Runs what is submitted at once, here."""
+
+    def submit(self, fn: Callable[..., T], /, *args: Any, **kwargs: Any) -> Future[T]:
+        """A future that is done."""
+        future: Future[T] = Future()
+        try:
+            future.set_result(fn(*args, **kwargs))
+        except Exception as error:
+            future.set_exception(error)
+        return future
 
 
 def stored(study: Study, store: Store) -> dict[str, Result]:
@@ -113,11 +135,12 @@ def process_pool(jobs: int) -> Iterator[tuple[ProcessPoolExecutor, Callable[[], 
             items.append(news.get())
         return items
 
+    others = set(multiprocessing.active_children())
     executor = ProcessPoolExecutor(jobs, mp_context=context, initializer=begin, initargs=(os.getpid(), news))
     try:
         yield executor, heard
     except BaseException:  # Ctrl-C among them: nobody waits for runs whose Results nobody will take
-        for worker in multiprocessing.active_children():
+        for worker in set(multiprocessing.active_children()) - others:
             worker.terminate()
         raise
     finally:

@@ -5,11 +5,14 @@ DIR/runs/<digest>.json   a Result
 DIR/runs/<digest>.npz    the particles at its last step: X, x (P,2), F (P,2,2), r0 (P,2,2), error_u (P,), float32
 """
 
+import fcntl
 import io
 import json
 import os
 import threading
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -46,11 +49,12 @@ class Store:
                 f"cannot make the study folder {self.folder}: {error.strerror}; give a writable one with --out"
             ) from error
         for leftover in self.runs.glob(".*"):  # of a process that was killed while it wrote
-            if time.time() - leftover.stat().st_mtime > HOUR:
-                leftover.unlink(missing_ok=True)
+            with suppress(FileNotFoundError):
+                if time.time() - leftover.stat().st_mtime > HOUR:
+                    leftover.unlink()
         if (self.folder / "study.json").exists():
             self.study()
-        self._write(self.folder / "study.json", json.dumps(asdict(study), indent=1).encode())
+        self.write(self.folder / "study.json", json.dumps(asdict(study), indent=1).encode())
 
     def study(self) -> Study:
         """The Study of this folder."""
@@ -63,8 +67,8 @@ class Store:
         path = self.runs / result.digest
         buffer = io.BytesIO()
         np.savez(buffer, allow_pickle=False, **arrays)
-        self._write(path.with_suffix(".npz"), buffer.getvalue())
-        self._write(path.with_suffix(".json"), json.dumps(asdict(result), indent=1).encode())
+        self.write(path.with_suffix(".npz"), buffer.getvalue())
+        self.write(path.with_suffix(".json"), json.dumps(asdict(result), indent=1).encode())
 
     def get(self, digest: str) -> Result | None:
         """The stored Result of that name, None if the run is still to be done."""
@@ -96,13 +100,23 @@ class Store:
             return adapter.validate_python(data)
         except FileNotFoundError as error:
             raise StoreError(f"{path.parent} is no study folder: it holds no {path.name}") from error
-        except (OSError, ValueError, AttributeError, ValidationError) as error:
+        except (OSError, ValueError, AttributeError, RecursionError, ValidationError) as error:
             raise StoreError(
                 f"{path} is broken and was left as it is; move it away, and what it held is made again"
             ) from error
 
+    @contextmanager
+    def locked(self) -> Iterator[None]:
+        """Hold the folder for this process; another that asks meanwhile gets a StoreError, and not the same runs."""
+        with (self.folder / ".lock").open("w") as file:
+            try:
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except OSError as error:
+                raise StoreError(f"another verify works in {self.folder}; wait for it or give another --out") from error
+            yield
+
     @staticmethod
-    def _write(path: Path, data: bytes) -> None:
+    def write(path: Path, data: bytes) -> None:
         """Atomic: a reader sees the old file or the whole new one, whenever the power goes."""
         try:
             temporary = path.with_name(f".{path.name}.{os.getpid()}.{threading.get_ident()}")

@@ -4,6 +4,7 @@ import hashlib
 import json
 from dataclasses import asdict, dataclass, field
 from functools import cache
+from math import inf
 from typing import Literal
 
 from cases.records import Expectation
@@ -46,6 +47,10 @@ class Run:
     force: bool = False
     case: str = "mms"
 
+    def __post_init__(self) -> None:
+        if self.cells < 1 or self.ppc < 1 or not 0 < self.courant < inf:
+            raise ValueError(f"no run: cells = {self.cells}, ppc = {self.ppc}, courant = {self.courant}")
+
     @property
     def digest(self) -> str:
         """Name of the Result: hash of the parameters and of the sources, 16 hex digits."""
@@ -70,7 +75,7 @@ class Failure:
 
 @dataclass(frozen=True)
 class Result:
-    """What one Run gave. `errors[quantity][norm]`; lengths in units of the domain, time in those of the problem."""
+    """What one Run gave. `errors[quantity][norm]`; all in the units of the problem."""
 
     run: Run
     digest: str
@@ -85,7 +90,13 @@ class Result:
     floor: dict[str, float] = field(default_factory=dict)  # round-off floor of the quantity
     failure: Failure | None = None
     environment: dict[str, str] = field(default_factory=dict)
+    parameters: dict[str, float] = field(default_factory=dict)  # of solution and material, the defaults too
     format: int = FORMAT
+
+    def __post_init__(self) -> None:
+        values = [self.errors.get(q, {}).get(n, inf) for q in QUANTITIES for n in NORMS]
+        if self.status == "finished" and not all(0 <= value < inf for value in values):
+            raise ValueError("a finished run has every error of every quantity, finite and not negative")
 
 
 @dataclass(frozen=True)
@@ -99,6 +110,10 @@ class Declared:
     norm: str
     judged: bool
     expectation: Expectation | None
+
+    def __post_init__(self) -> None:
+        if self.quantity not in QUANTITIES or self.norm not in NORMS:
+            raise ValueError(f"no quantity {self.quantity!r} in norm {self.norm!r}")
 
 
 @dataclass(frozen=True)

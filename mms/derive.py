@@ -19,8 +19,6 @@ Expressions = list[sp.Expr]
 class Energy(Protocol):
     """What a law must offer to be manufactured for."""
 
-    rho0: float
-
     def energy(self, F: Any, log: Any) -> Any:
         """Stored energy per initial volume of a 3 x 3 deformation gradient."""
 
@@ -55,8 +53,8 @@ class Fields:
         return [sp.sympify(e).xreplace(self.inner) for e in expressions]
 
 
-def derive(solution: Solution, material: Energy) -> Fields:
-    """All fields of `solution` in a body of `material`."""
+def derive(solution: Solution, material: Energy, rho0: float) -> Fields:
+    """All fields of `solution` in a body of `material` with initial density `rho0`."""
     X, t = sp.symbols("X Y", real=True), sp.Symbol("t", real=True)
     u = [sp.sympify(component) for component in solution.displacement(X, t)]
     f = sp.symbols("Fxx Fxy Fyx Fyy", real=True)
@@ -70,7 +68,7 @@ def derive(solution: Solution, material: Energy) -> Fields:
     for i, J, q in product((0, 1), (0, 1), range(4)):  # q runs over the components kL of F
         second = inner_symbol(inner, sp.diff(F[q], X[J]), f"d{f[q]}_d{X[J]}")
         divergence[i] += sp.diff(P[2 * i + J], f[q]) * second
-    b = [inner_symbol(inner, sp.diff(u[i], t, 2), f"a{X[i]}") - divergence[i] / material.rho0 for i in (0, 1)]
+    b = [inner_symbol(inner, sp.diff(u[i], t, 2), f"a{X[i]}") - divergence[i] / rho0 for i in (0, 1)]
 
     J = f[0] * f[3] - f[1] * f[2]
     sigma = [

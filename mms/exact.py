@@ -24,6 +24,7 @@ from solver.state import Floats
 EXACT = nothing(F1, F1, i8, F1)  # columns[C*b + c], scalars[s], particles in the block, out[row*BLOCK + b]
 Exact = function_type(EXACT)
 ROWS = {"u": (0, 1), "v": (2, 3), "F": (4, 5, 6, 7), "sigma": (8, 9, 10, 11), "b": (12, 13)}  # of `out`
+EXACT_WHOLE = 2**53  # whole numbers beyond are no integers that Numba can type
 ROOM = 16  # rows of `out`, two of them scratch for logarithms
 
 HEADER = '''"""Generated from a manufactured solution; not for editing."""
@@ -84,7 +85,9 @@ class Printer(PythonCodePrinter):
 
 def whole_numbers(expression: sp.Expr) -> sp.Expr:
     """J**(-2.0) as J**(-2): with a whole exponent it is two products, with another a call of pow()."""
-    return sp.sympify(expression).replace(lambda e: e.is_Float and float(e).is_integer(), lambda e: sp.Integer(int(e)))
+    return sp.sympify(expression).replace(
+        lambda e: e.is_Float and abs(e) < EXACT_WHOLE and float(e).is_integer(), lambda e: sp.Integer(int(e))
+    )
 
 
 def _body(inner: dict[sp.Symbol, sp.Expr], rows: list[sp.Expr], hoist: Hoist) -> str:

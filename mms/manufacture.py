@@ -74,9 +74,9 @@ class Manufactured:
         return evaluate
 
 
-def manufacture(solution: Solution, material: Energy) -> Manufactured:
-    """Exact x, v, F, sigma, P and b for a displacement field in a body of `material` with its density rho0.
+def manufacture(solution: Solution, material: Energy, rho0: float) -> Manufactured:
+    """Exact x, v, F, sigma, P and b for a displacement field in a body of `material` with initial density rho0.
 
     The source term comes from the material's energy by differentiation, never from the stress the solver computes.
     """
-    return Manufactured(derive(solution, material))
+    return Manufactured(derive(solution, material, rho0))

@@ -1,14 +1,11 @@
 """What the solutions on a square have in common: the domain, the reference speed and the duration."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from solver.state import Floats
-
-if TYPE_CHECKING:
-    pass
 
 
 @dataclass(frozen=True)
@@ -46,7 +43,7 @@ class Square:
     def limit(name: str, value: float, bound: float) -> None:
         """Raise ValueError unless |value| < bound: beyond it F is not invertible somewhere."""
         if not abs(value) < bound:
-            raise ValueError(f"{name} = {value} must be below {bound:.4g} in size, or F is not invertible")
+            raise ValueError(f"{name} = {value} must be below {bound:.4g} in size, to keep F invertible")
 
     @staticmethod
     def exact(value: float) -> Any:

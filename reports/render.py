@@ -1,7 +1,6 @@
 """A study folder -> report.html, figures/ and tables/; from what is stored alone, and the same bytes each time."""
 
 import base64
-import os
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,7 +9,7 @@ from pathlib import Path
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from matplotlib.figure import Figure
 
-from cases.store import StoreError
+from cases.store import Store, StoreError
 from cases.study import QUANTITIES, Run
 from reports import show, show_runs, style, tables, words
 from reports.blind_spots import blind_spots
@@ -45,9 +44,15 @@ def render(folder: Path, cells: int = CELLS, ppc: int = PPC) -> Path:
     try:
         for name in ("figures", "tables"):
             (folder / name).mkdir(exist_ok=True)
+        (folder / "tables" / "now.csv").touch()  # the clock of the file system, which need not be ours
+        started = (folder / "tables" / "now.csv").stat().st_mtime_ns
+        (folder / "tables" / "now.csv").unlink()
         tables.write(record, folder / "tables")
         text = _page(record, folder / "figures", (cells, ppc))
-        return _write(folder / "report.html", text)
+        for name in ("figures", "tables"):
+            _sweep(folder / name, started)
+        Store.write(folder / "report.html", text.encode())
+        return folder / "report.html"
     except OSError as error:
         raise StoreError(f"cannot write the report into {folder}: {error.strerror}; the results are kept") from error
 
@@ -127,9 +132,8 @@ def _alt(record: Record, solution: str, norm: str) -> str:
     return " ".join(parts)
 
 
-def _write(path: Path, text: str) -> Path:
-    """The whole page or the old one: a reader never sees half of it."""
-    temporary = path.with_name(f".{path.name}.{os.getpid()}")
-    temporary.write_bytes(text.encode())
-    os.replace(temporary, path)
-    return path
+def _sweep(folder: Path, started: float) -> None:
+    """Remove figures and tables that an earlier study left in the folder."""
+    for file in folder.iterdir():
+        if file.suffix in (".svg", ".pdf", ".png", ".csv") and file.stat().st_mtime_ns < started:
+            file.unlink()

@@ -10,6 +10,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+# Threads that spin while they wait starve each other and the worker processes beside them: five times slower on a busy
+# machine. Read once by the threading layer, so it is set before Numba is loaded.
+os.environ.setdefault("OMP_WAIT_POLICY", "passive")
+
 import numba
 from numba import boolean, float64, int64, types, void
 

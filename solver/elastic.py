@@ -1,7 +1,7 @@
 """Elastic constants, validated once for every elastic law."""
 
 from dataclasses import dataclass
-from math import sqrt
+from math import inf, sqrt
 
 
 @dataclass(frozen=True)
@@ -16,8 +16,8 @@ class Elastic:
     rho0: float = 1.0
 
     def __post_init__(self) -> None:
-        if not (self.E > 0 and self.rho0 > 0):
-            raise ValueError(f"E = {self.E} and rho0 = {self.rho0} must be above zero")
+        if not (0 < self.E < inf and 0 < self.rho0 < inf):
+            raise ValueError(f"E = {self.E} and rho0 = {self.rho0} must be above zero and finite")
         if not -1 < self.nu < 0.5:
             raise ValueError(f"nu = {self.nu} must lie between -1 and 0.5")
 

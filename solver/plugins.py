@@ -53,5 +53,5 @@ def number(name: str, key: str, value: str) -> float:
     except ValueError:
         raise ValueError(f"{name}: {key}={value!r} is no number") from None
     if not isfinite(parsed):
-        raise ValueError(f"{name}: {key}={value} is not finite")
+        raise ValueError(f"{name}: {key}={value} must be a finite number")
     return parsed

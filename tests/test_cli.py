@@ -88,7 +88,7 @@ BAD = {
     "parameter that is no number": (["--solution", "axis_aligned:A=abc"], ["A='abc'", "no number"]),
     "parameter without a value": (["--solution", "axis_aligned:A"], ["A=''", "no number"]),
     "amplitude too large": (["--solution", "axis_aligned:A=0.2"], ["A = 0.2", "below 0.1592"]),
-    "amplitude that is no number": (["--solution", "axis_aligned:A=nan"], ["A=nan", "not finite"]),
+    "amplitude that is no number": (["--solution", "axis_aligned:A=nan"], ["A=nan", "finite number"]),
     "side of zero": (["--solution", "axis_aligned:L=0"], ["above zero"]),
     "nu too large": (["--material", "neo_hookean:nu=0.5"], ["between -1 and 0.5"]),
     "ppc no square": (["--ppc", "4,3"], ["3", "square", "1, 4, 9"]),
@@ -307,9 +307,9 @@ def test_error_of_zero(verify: Verify) -> None:
     assert verify("mms", "--cells", "8,16", "--ppc", "4", "--solution", "axis_aligned:A=0", "--out", "study").code == 3
 
 
-def test_default_folder_is_named_after_the_methods(verify: Verify, quickly: None, tmp_path: Path) -> None:
+def test_default_folder_is_named_after_what_is_swept(verify: Verify, quickly: None, tmp_path: Path) -> None:
     verify("mms", "--method", "mpm", "--method", "cpdi", "--method", "mpm", "--cells", "8")
-    assert [path.name for path in (tmp_path / "results").iterdir()] == ["mms-mpm-cpdi"]
+    assert [path.name for path in (tmp_path / "results").iterdir()] == ["mms-mpm-cpdi-cells-8"]
 
 
 def test_command_in_the_study_repeats_it(verify: Verify, quickly: None, tmp_path: Path) -> None:

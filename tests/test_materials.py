@@ -81,7 +81,9 @@ def test_a_small_strain_law_is_consistent_to_first_order(name: str) -> None:
         np.testing.assert_allclose(rates, 2, atol=0.03)
         assert 0.1 < error[0] / amplitudes[0] ** 2 < 20
         P = np.array([first_piola(law, plane(np.eye(2) + 0.3 * g)) for g in G])
-        np.testing.assert_allclose(stress(law, np.eye(2) + 0.3 * G), P[:, [0, 1, 2, 0], [0, 1, 2, 1]], atol=1e-9 * law.E)
+        np.testing.assert_allclose(
+            stress(law, np.eye(2) + 0.3 * G), P[:, [0, 1, 2, 0], [0, 1, 2, 1]], atol=1e-9 * law.E
+        )
 
 
 @every_law

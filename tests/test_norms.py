@@ -19,7 +19,7 @@ BEHIND = 2.5e-4
 
 @pytest.fixture(scope="module")
 def exact() -> Manufactured:
-    return manufacture(create("mms.solutions", "clamped_shear"), NeoHookean())
+    return manufacture(create("mms.solutions", "clamped_shear"), NeoHookean(), 1.0)
 
 
 def body(count: int, rng: np.random.Generator, unequal: bool = True) -> Particles:

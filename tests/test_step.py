@@ -1,4 +1,4 @@
-"""One explicit step: what it must reproduce exactly, what it conserves, its walls, and how a run ends that cannot go on."""
+"""One explicit step: what it reproduces exactly, what it conserves, its walls, and how a run that cannot go on ends."""
 
 from typing import Any
 
@@ -7,10 +7,11 @@ import pytest
 
 from cases.library import mms
 from cases.study import Run
+from solver._jit import BLOCK
 from solver.boundary import box
 from solver.material.neo_hookean import NeoHookean
 from solver.plugins import available, load
-from solver.state import Floats, Grid, Particles, fill_rectangle
+from solver.state import Grid, Particles, fill_rectangle
 from solver.step import Model, RunFailed, Scheme, advance, check_time_step, grid_to_particles, particles_to_grid
 
 BASES = available("solver.basis")
@@ -36,6 +37,12 @@ def model(
     return Model(grid, body, load("solver.basis", name)(), law, box(grid, kind), dt, Scheme(flip))
 
 
+def go(m: Model, count: int, load: Any = None) -> None:
+    """So many steps."""
+    for _ in range(count):
+        advance(m, load or still)
+
+
 def still(p: Particles, t: float) -> None:
     """No body force."""
 
@@ -58,8 +65,7 @@ def test_free_fall(name: str, flip: float, g: tuple[float, float]) -> None:
     def load_(p: Particles, t: float) -> None:
         p.b[:] = g
 
-    for _ in range(n):
-        advance(m, load_)
+    go(m, n, load_)
     step = m.dt**2 * n * (n + 1) / 2  # the sum of dt v over the steps: velocity first, then place
     assert np.abs(p.v - (v0 + n * m.dt * np.array(g))).max() < 1e-11
     assert np.abs(p.x - p.X - (n * m.dt * v0 + step * np.array(g))).max() < 1e-12
@@ -105,8 +111,6 @@ def test_grid_sums_against_plain_numpy(name: str) -> None:
     p.b[:] = np.random.default_rng(2).standard_normal(p.b.shape)
     particles_to_grid(m)
     mass, momentum, force = np.zeros(len(g.mass)), np.zeros((len(g.mass), 2)), np.zeros((len(g.mass), 2))
-    from solver._jit import BLOCK
-
     for q in range(len(p)):
         table, node = np.empty(3 * K * BLOCK), np.empty(K * BLOCK, np.int64)
         whole = (0.0, g.nx - 1.0, 0.0, g.ny - 1.0)
@@ -216,17 +220,30 @@ def test_walls_hold(name: str, kind: Any) -> None:
     p = m.particles
     p.v[:] = (-1.0, -0.5)
     p.F[:, 0, 0] = p.F[:, 1, 1] = 3.0  # for cpdi: corners of domains reach behind the walls
-    advance(m, still)
+    advance(m, lambda p, t: p.b.fill(-500.0))  # a wall takes the force too: FLIP must not hand it on
     g, held = m.grid, m.walls.held
     assert (g.velocity[held] == 0).all()
     assert (g.acceleration[held] == 0).all()
+    assert np.abs(g.force[held]).max() > 0.1
     free_ = ~held & (g.mass > 1e-9)[:, None]
     assert np.abs(g.velocity[free_]).min() > 0.1
     behind = (g.nodes < -0.5 * DX).any(axis=1)
     assert (g.mass[behind].sum() > 0) == (name == "cpdi")
     if kind == "roller":
         wall = np.isclose(g.nodes[:, 0], 0) & (g.nodes[:, 1] > 0.5 * DX) & (g.mass > 1e-9)
-        np.testing.assert_allclose(g.velocity[wall], np.tile([0, -0.5], (wall.sum(), 1)), atol=1e-9)
+        np.testing.assert_allclose(g.velocity[wall], np.tile([0, -0.5 - 500 * DT], (wall.sum(), 1)), atol=1e-9)
+
+
+@every_basis
+def test_a_moving_wall(name: str) -> None:
+    """Held nodes have the velocity and the acceleration of the wall, whatever the particles do; so do those with it."""
+    m = model(name, flip=1.0)
+    stir(m)
+    m.walls.held[:], m.walls.value[:], m.walls.rate[:] = True, (0.3, -0.2), (40.0, 70.0)
+    x, v = m.particles.x.copy(), m.particles.v.copy()
+    advance(m, still)
+    np.testing.assert_allclose(m.particles.x, x + m.dt * np.array([0.3, -0.2]), atol=1e-15)
+    np.testing.assert_allclose(m.particles.v, v + m.dt * np.array([40.0, 70.0]), atol=1e-14)
 
 
 @every_basis
@@ -240,7 +257,7 @@ def test_corners_behind_a_wall_count(name: str) -> None:
 
 @every_basis
 def test_flip_and_pic(name: str) -> None:
-    """Without forces FLIP keeps each velocity to the bit, PIC takes the mean of the neighbours, a share lies between."""
+    """Without forces FLIP keeps each velocity to the bit, PIC takes a mean of neighbours, a share lies between."""
     after = {}
     for flip in (0.0, 0.4, 1.0):
         m = model(name, flip=flip)
@@ -269,14 +286,15 @@ def swing(name: str, turn: Any) -> Model:
     moved = moved[first]
     p.v[:] = np.stack([-1.5 - moved[:, 1] + moved[:, 0] ** 2, 0.7 + moved[:, 0] * moved[:, 1]], -1) @ matrix
     m = Model(m.grid, p, m.basis, SOFT, m.walls, m.dt)
-    for _ in range(90):
-        advance(m, still)
+    go(m, 90)
     return m
 
 
 @every_basis
 @pytest.mark.parametrize(
-    "turn", [[[-1, 0], [0, 1]], [[1, 0], [0, -1]], [[0, -1], [1, 0]], [[0, 1], [1, 0]]], ids=["x", "y", "90", "diagonal"]
+    "turn",
+    [[[-1, 0], [0, 1]], [[1, 0], [0, -1]], [[0, -1], [1, 0]], [[0, 1], [1, 0]]],
+    ids=["x", "y", "90", "diagonal"],
 )
 def test_symmetry(name: str, turn: Any) -> None:
     """Mirrored or turned by 90 degrees, the run is the same to round-off, wall and cell crossings included."""
@@ -314,8 +332,7 @@ def test_leaving_the_grid(name: str) -> None:
     free(m).particles.v[np.isin(m.particles.id, rows)] = (20.0, 0.0)
     X = m.particles.in_initial_order("X").copy()
     with pytest.raises(RunFailed, match="outside the grid") as caught:
-        for _ in range(100):
-            advance(m, still)
+        go(m, 100)
     failed = caught.value
     assert X[failed.particle, 0] == X[:, 0].max()  # the foremost column of the right body
     beyond = 1 + 2 * DX - X[failed.particle, 0] - (0.25 * DX if name == "cpdi" else 0)
@@ -344,13 +361,12 @@ def test_nan_velocity(name: str) -> None:
     """One NaN poisons the nodes around it; the particle named is the one it came from or one next to it."""
     m, rows = two_bodies(name)
     X, start = m.particles.in_initial_order("X").copy(), rows[7]
-    for _ in range(3):
-        advance(m, still)
+    go(m, 3)
     m.particles.v[row_of(m, start), 1] = np.nan
     with pytest.raises(RunFailed, match="not finite") as caught:
         advance(m, still)
     assert caught.value.step == 3
-    assert np.abs(X[caught.value.particle] - X[start]).max() < 2 * DX
+    assert np.abs(X[caught.value.particle] - X[start]).max() < 2.5 * DX  # a cell and a domain on either side
 
 
 @every_basis
@@ -359,8 +375,31 @@ def test_nan_state(name: str, array: str) -> None:
     m, rows = two_bodies(name)
     getattr(m.particles, array)[row_of(m, rows[3])].flat[0] = np.nan
     with pytest.raises(RunFailed):
-        for _ in range(2):
-            advance(m, still)
+        go(m, 2)
+
+
+@pytest.mark.parametrize("entries", [(1e200, 0, 0, 1e200), (np.inf, 0, 0, 1), (1e200, 1e200, 1e200, 1e200)])
+def test_det_f_overflows(entries: Any) -> None:
+    """Not a number, or none that can be held: a failed run, and no warning on the way."""
+    m = model("mpm")
+    m.particles.F[3] = np.reshape(entries, (2, 2))
+    with pytest.raises(RunFailed) as caught:
+        grid_to_particles(m)
+    assert caught.value.particle == m.particles.id[3]
+
+
+def test_det_f_of_round_off() -> None:
+    """A determinant may be below zero by one formula and above it by another: that run ends as the others do."""
+    rng = np.random.default_rng(0)
+    F = rng.uniform(0.1, 1, (20000, 2, 1)) * rng.uniform(0.1, 1, (20000, 1, 2))  # singular but for rounding
+    J = F[:, 0, 0] * F[:, 1, 1] - F[:, 0, 1] * F[:, 1, 0]
+    doubtful = F[(J <= 0) & (np.linalg.det(F) > 0)]
+    assert len(doubtful) > 0
+    m = model("mpm")
+    m.particles.F[3] = doubtful[0]
+    with pytest.raises(RunFailed, match="det F <= 0") as caught:
+        grid_to_particles(m)  # the grid is at rest: F stays
+    assert caught.value.particle == m.particles.id[3]
 
 
 @pytest.mark.parametrize("speed", [0.0, 30.0])

@@ -58,9 +58,10 @@ def conduct(study: Study, settings: Settings) -> int:
         check_junit(settings.junit)
         store = Store(settings.folder)
         store.create(study)
-        results = compute(study, store, settings)
-        found = findings(study, results)
-        page = render(settings.folder)
+        with store.locked():
+            results = compute(study, store, settings)
+            found = findings(study, results)
+            page = render(settings.folder)
         if settings.junit:
             write_junit(settings.junit, study, found)
         with printing():
@@ -73,7 +74,7 @@ def conduct(study: Study, settings: Settings) -> int:
 
 def compute(study: Study, store: "Store", settings: Settings) -> dict[str, Result]:
     """The Results of the study; in this process if there is little to do or one job is asked for."""
-    from cases.runner import Ticker, cost, pending, perform, process_pool, run_study, stored
+    from cases.runner import InProcess, Ticker, cost, pending, process_pool, run_study
     from verify.progress import progress
 
     waiting = pending(study, store)
@@ -83,6 +84,4 @@ def compute(study: Study, store: "Store", settings: Settings) -> dict[str, Resul
             with process_pool(jobs) as (executor, heard):
                 return run_study(study, store, executor, settings.threads, bar.done, lambda: bar.hear(heard()))
         Ticker.tell = staticmethod(lambda news: bar.hear([news]))
-        for run in waiting:
-            bar.done(perform(run, settings.folder, settings.threads))
-    return stored(study, store)
+        return run_study(study, store, InProcess(), settings.threads, bar.done)

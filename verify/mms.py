@@ -2,6 +2,7 @@
 
 import shlex
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -47,7 +48,7 @@ def mms(
     threads: Annotated[int, typer.Option(help="Threads of one run; any number gives the same bits.")] = 1,
     quick: Annotated[bool, typer.Option("--quick", help="8,16,32,64 cells with 4 particles each.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Run time steps above the stability limit too.")] = False,
-    out: Annotated[Path | None, typer.Option(help="Study folder.", show_default="results/mms-METHODS")] = None,
+    out: Annotated[Path | None, typer.Option(help="Study folder.", show_default="results/NAME-OF-THE-STUDY")] = None,
     json_output: Annotated[
         bool, typer.Option("--json", help="One JSON document on standard output, nothing else.")
     ] = False,
@@ -56,8 +57,8 @@ def mms(
     """Convergence of MPM and CPDI to a manufactured solution: errors, observed orders, verdict, HTML report."""
     from verify.conduct import Settings, conduct, usage
 
+    label = "-quick" if quick and cells is None and ppc is None else ""
     default = QUICK if quick else USUAL
-    cells, ppc = (default[key] if given is None else given for key, given in (("cells", cells), ("ppc", ppc)))
     methods = tuple(dict.fromkeys(method or ["cpdi"]))
     with usage():
         from cases.mms_study import Sweep, build
@@ -66,19 +67,19 @@ def mms(
             methods,
             solution,
             material,
-            integers(cells, "--cells"),
-            integers(ppc, "--ppc"),
+            integers(default["cells"] if cells is None else cells, "--cells"),
+            integers(default["ppc"] if ppc is None else ppc, "--ppc"),
             courant,
             flip,
             staggered,
             force,
         )
-        name = f"mms-{'-'.join(methods)}{'-quick' if quick else ''}"
+        named = replace(sweep, cells=Sweep.cells, ppc=Sweep.ppc) if label else sweep
         command = "verify " + shlex.join(repeatable(sys.argv[1:]))
-        study = build(sweep, command, name)
+        study = build(sweep, command, named.name + label)
     if (jobs is not None and jobs < 1) or threads < 1:
         raise typer.TyperException("--jobs and --threads take whole numbers from 1 on")
-    folder = out or Path("results") / name
+    folder = out or Path("results") / study.name
     return conduct(study, Settings(folder, jobs, threads, json_output, junit))
 
 

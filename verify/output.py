@@ -5,12 +5,23 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+import typer
+
 
 @contextmanager
 def printing() -> Iterator[None]:
-    """Whatever is printed inside goes nowhere once nobody reads it."""
+    """Whatever is printed inside goes nowhere once nobody reads it; a full disk is one line."""
     try:
         yield
-        sys.stdout.flush()
+        if sys.stdout is not None:
+            sys.stdout.flush()
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # or the flush at exit complains
+        silence()
+    except OSError as error:
+        silence()
+        raise typer.TyperException(f"cannot write to standard output: {error.strerror}") from error
+
+
+def silence() -> None:
+    """Send what is still in the buffer nowhere, or the flush at exit complains once more."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)

@@ -4,8 +4,10 @@ import resource
 import sys
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import asdict, dataclass
 from math import ceil, sqrt
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -56,7 +58,7 @@ def setup(run: Run) -> tuple[Model, Comparison, int]:
     dt = solution.duration / steps
     behind = 0.5 * dt if run.staggered else 0.0
 
-    exact = manufacture(solution, material)
+    exact = manufacture(solution, material, material.rho0)
     X = particles.X
     particles.x, particles.v = exact.x(X, 0.0), exact.v(X, -behind)
     particles.F, particles.sigma = exact.F(X, 0.0), exact.sigma(X, 0.0)
@@ -70,6 +72,7 @@ def setup(run: Run) -> tuple[Model, Comparison, int]:
 
 def execute(run: Run, tick: Callable[[float], None] = lambda share: None) -> tuple[Result, Arrays]:
     """Run to the end, or to where it cannot go on: a failed run is a Result. `tick` hears the share that is done."""
+    forget_peak()
     model, comparison, steps = setup(run)
     failure, started = None, time.perf_counter()
     try:
@@ -82,12 +85,15 @@ def execute(run: Run, tick: Callable[[float], None] = lambda share: None) -> tup
     except RunFailed as reason:
         failure = Failure(reason.reason, reason.step, reason.particle, reason.cell)
     wall = time.perf_counter() - started
-    scale = magnitude(comparison.exact, model.particles.X, steps * model.dt)
+    errors, scale = comparison.norms.errors(), magnitude(comparison.exact, model.particles.X, steps * model.dt)
+    if not failure and not np.isfinite([list(norms.values()) for norms in errors.values()]).all():
+        failure = Failure("an error that is not finite", model.steps)
+    arrays = snapshot(model, comparison)
     result = Result(
         run=run,
         digest=run.digest,
         status="failed" if failure else "finished",
-        errors={} if failure else comparison.norms.errors(),
+        errors={} if failure else errors,
         steps=model.steps,
         particles=len(model.particles),
         dt=model.dt,
@@ -97,8 +103,9 @@ def execute(run: Run, tick: Callable[[float], None] = lambda share: None) -> tup
         floor={} if failure else round_off(scale, model),
         failure=failure,
         environment=environment(),
+        parameters={**parameters("solution", run.solution), **parameters("material", run.material)},
     )
-    return result, snapshot(model, comparison)
+    return result, arrays
 
 
 def magnitude(exact: Manufactured, X: Floats, duration: float) -> dict[str, float]:
@@ -106,7 +113,10 @@ def magnitude(exact: Manufactured, X: Floats, duration: float) -> dict[str, floa
     some = X[:: max(1, len(X) // 1000)]
     times = duration * (np.arange(16) + 0.5) / 16
     fields = {"u": exact.u, "v": exact.v, "F": exact.F, "sigma": exact.sigma}
-    squares = {q: np.mean([np.sum(f(some, t) ** 2) / len(some) for t in times]) for q, f in fields.items()}
+    weight = {"sigma": np.array([1.0, 1.0, 1.0, 2.0])}
+    squares = {
+        q: np.mean([np.sum(weight.get(q, 1.0) * f(some, t) ** 2) / len(some) for t in times]) for q, f in fields.items()
+    }
     return {quantity: sqrt(square) for quantity, square in squares.items()}
 
 
@@ -128,7 +138,22 @@ def snapshot(model: Model, comparison: Comparison) -> Arrays:
     return {name: a.astype(np.float32) for name, a in {**arrays, "error_u": np.hypot(*error.T)}.items()}
 
 
+def parameters(kind: str, specification: str) -> dict[str, float]:
+    """Every parameter of a solution or material, the defaults too."""
+    package = {"solution": "mms.solutions", "material": "solver.material"}[kind]
+    return {f"{kind} {key}": value for key, value in asdict(create(package, specification)).items()}
+
+
+def forget_peak() -> None:
+    """Begin the peak of memory anew (Linux; elsewhere it is that of the process so far)."""
+    with suppress(OSError):
+        Path("/proc/self/clear_refs").write_text("5")
+
+
 def peak_memory() -> float:
-    """Largest resident size of this process so far, MB."""
+    """Largest resident size since forget_peak, MB."""
+    with suppress(OSError, StopIteration):
+        lines = Path("/proc/self/status").read_text().splitlines()
+        return int(next(line for line in lines if line.startswith("VmHWM")).split()[1]) / 2**10
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     return peak / (2**20 if sys.platform == "darwin" else 2**10)

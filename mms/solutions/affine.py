@@ -40,8 +40,8 @@ class Affine(Square):
 
     @property
     def margin(self) -> float:
-        """The largest displacement is below a half for parameters in bounds."""
-        return 0.5 * self.L
+        """The largest displacement is 0.61 L with all parameters at their bounds."""
+        return 0.65 * self.L
 
     def displacement(self, X: Sequence["sp.Symbol"], t: "sp.Symbol") -> "sp.Matrix":
         """u of the reference place X and the time t."""

@@ -3,8 +3,8 @@
     u_x = A sin(2 pi X / L) sin(C pi t / L + phase)
     u_y = A sin(2 pi Y / L) sin(C pi t / L + phase + pi)      on 0 <= X, Y <= L
 
-Boundary: u_n = 0 on all four sides and P is diagonal, so rollers are consistent. Two full columns of waves pass in the
-duration 2 L / C, one period. A < L / (2 pi), or F is not invertible.
+Boundary: u_n = 0 on all four sides and P is diagonal, so rollers are consistent. The
+duration 2 L / C is one period. A < L / (2 pi), or F is not invertible.
 What it cannot see: F is diagonal, so shear, rotation and transposes are invisible; with phase = 0 the motion starts
 without acceleration, which hides a missing half-step start.
 """

@@ -57,6 +57,7 @@ def error_field(run: Run, arrays: Arrays) -> Figure:
 
 
 def _limits(corners: NDArray[np.float64], axis: int) -> tuple[float, float]:
-    """The unit square and whatever left it, with a little air."""
+    """The domains, with a little air."""
     values = corners[..., axis][np.isfinite(corners[..., axis])]
-    return min(0.0, float(values.min(initial=0.0))) - 0.015, max(1.0, float(values.max(initial=1.0))) + 0.015
+    low, high = (float(values.min()), float(values.max())) if len(values) else (0.0, 1.0)
+    return low - 0.015 * (high - low), high + 0.015 * (high - low)

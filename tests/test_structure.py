@@ -1,0 +1,146 @@
+"""The house as it is meant to be: imports point down, plug-ins hold what their names promise, help is light."""
+
+import ast
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from solver.plugins import available, camel, load
+from solver.sources import TOP
+
+FLOORS = ("solver", "mms", "cases", "reports", "verify")  # from the ground up
+PLUGINS = {
+    "solver.basis": {"support", "order", "fill"},
+    "solver.material": {"energy", "update", "wave_speed"},
+    "mms.solutions": {"displacement", "boundary", "lower", "upper", "duration"},
+}
+FILES = sorted(file for floor in FLOORS for file in (TOP / floor).rglob("*.py"))
+
+
+def imported(source: str) -> Iterator[str]:
+    """Modules a source imports, by statement (below TYPE_CHECKING too) or by import_module with a literal."""
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, "relative imports hide the floor"
+            yield node.module or ""
+        elif isinstance(node, ast.Call) and "import_module" in ast.unparse(node.func):
+            start = node.args[0].values[0] if isinstance(node.args[0], ast.JoinedStr) else node.args[0]
+            if isinstance(start, ast.Constant):
+                yield str(start.value)
+
+
+def upward(floor: str, source: str) -> list[str]:
+    """Imports of floors above, and of the tests."""
+    above = {*FLOORS[FLOORS.index(floor) + 1 :], "tests"}
+    return [module for module in imported(source) if module.partition(".")[0] in above]
+
+
+@pytest.mark.parametrize("file", FILES, ids=lambda file: file.relative_to(TOP).as_posix())
+def test_imports_point_down(file: Path) -> None:
+    wrong = upward(file.relative_to(TOP).parts[0], file.read_text())
+    assert not wrong, f"{file.relative_to(TOP)} imports {', '.join(wrong)}: a floor above its own"
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        "import cases.study",
+        "from reports import render",
+        "def f():\n    from verify.main import main",
+        "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from cases.study import Run",
+        "from importlib import import_module\nimport_module(f'cases.library.{name}')",
+    ],
+)
+def test_an_upward_import_is_seen(source: str) -> None:
+    assert upward("mms", source)
+    assert not upward("verify", source)
+
+
+def test_every_floor_is_looked_at() -> None:
+    folders = {file.relative_to(TOP).parts[0] for file in FILES}
+    assert folders == set(FLOORS)
+    packages = {path.parent.name for path in TOP.glob("*/__init__.py")}
+    assert packages <= set(FLOORS), "a new package needs its floor here"
+
+
+NAMES = [(package, name) for package in PLUGINS for name in available(package)]
+
+
+@pytest.mark.parametrize(("package", "name"), NAMES)
+def test_a_plugin_holds_what_its_name_promises(package: str, name: str) -> None:
+    """The CamelCase class, defined in that file, with what the contract asks for and a problem statement."""
+    plugin: Any = load(package, name)
+    assert plugin.__name__ == camel(name)
+    assert plugin.__module__ == f"{package}.{name}"
+    missing = [item for item in PLUGINS[package] if not hasattr(plugin, item)]
+    assert not missing, f"{package}.{name} lacks {missing}"
+    assert len(sys.modules[plugin.__module__].__doc__ or "") > 80
+    plugin()  # every parameter has a default
+
+
+@pytest.mark.parametrize("name", available("solver.basis"))
+def test_a_basis_has_the_one_signature(name: str) -> None:
+    from solver.weights import FILL
+
+    basis: Any = load("solver.basis", name)
+    assert basis.fill.signatures == [FILL.args]
+    assert basis.fill.nopython_signatures[0].return_type == FILL.return_type
+    assert isinstance(basis.support, int)
+    assert 0 < basis.order < 10
+
+
+@pytest.mark.parametrize("name", available("cases.library"))
+def test_a_case_can_be_executed(name: str) -> None:
+    from importlib import import_module
+
+    assert callable(import_module(f"cases.library.{name}").execute)
+
+
+def test_names_of_plugins() -> None:
+    assert camel("neo_hookean") == "NeoHookean"
+    assert {"mpm", "cpdi"} <= set(available("solver.basis"))
+    assert not [name for package in PLUGINS for name in available(package) if name.startswith("_")]
+    with pytest.raises(ValueError, match="no method 'fem'; choose from cpdi, mpm"):
+        load("solver.basis", "fem")
+
+
+HEAVY = ("numba", "sympy", "numpy", "scipy", "pandas", "matplotlib", "llvmlite")
+PROBE = f"""
+import sys
+from verify.main import main
+try:
+    main()
+except SystemExit as end:
+    code = end.code
+print("HEAVY", code, *sorted(set(sys.modules) & {set(HEAVY)!r}), file=sys.stderr)
+"""
+
+
+@pytest.mark.parametrize(
+    "words", [["--help"], ["mms", "--help"], ["report", "--help"], ["list"], ["--version"], ["mms", "--nonsense"]]
+)
+def test_help_is_light(words: list[str]) -> None:
+    """No subcommand's help or list imports what computes."""
+    command = [sys.executable, "-c", PROBE, *words]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=TOP, check=True, timeout=60)
+    last = done.stderr.splitlines()[-1].split()
+    assert last == ["HEAVY", "2" if "--nonsense" in words else "0"]
+    if words[0] == "list":
+        assert all(name in done.stdout for _, name in NAMES)
+    if words == ["mms", "--help"]:
+        assert "cpdi, mpm" in done.stdout
+
+
+def test_the_probe_sees_what_is_imported() -> None:
+    """The check above can fail."""
+    probe = "import numpy\n" + PROBE
+    done = subprocess.run(
+        [sys.executable, "-c", probe, "--version"], capture_output=True, text=True, cwd=TOP, check=True
+    )
+    assert "numpy" in done.stderr.splitlines()[-1]
