@@ -34,12 +34,22 @@ def parameters(record: Record) -> Table:
     )
 
 
+def problem(record: Record) -> Table:
+    """Every parameter of solution and material, the defaults too, with the number of runs that it holds for."""
+    return _shared(record, "parameters", "The problem")
+
+
 def environment(record: Record) -> Table:
     """Versions, commit, processor: one row a value, with the number of runs that it holds for."""
+    return _shared(record, "environment", "Where it ran")
+
+
+def _shared(record: Record, field: str, caption: str) -> Table:
+    """A dictionary that every Result has: one row a value."""
     found = [r for run in record.study.runs if (r := record.result(run))]
     rows = []
-    for name in sorted({key for result in found for key in result.environment}):
-        values = [result.environment.get(name, words.DASH) for result in found]
+    for name in sorted({key for result in found for key in getattr(result, field)}):
+        values = [_text(getattr(result, field).get(name, words.DASH)) for result in found]
         for value in sorted(set(values)):
             rows.append(
                 (
@@ -48,7 +58,7 @@ def environment(record: Record) -> Table:
                     "all stored runs" if values.count(value) == len(found) else words.count(values.count(value), "run"),
                 )
             )
-    return Table("Where it ran", ("what", "value", "holds for"), tuple(rows), texts=("value", "holds for"))
+    return Table(caption, ("what", "value", "holds for"), tuple(rows), texts=("value", "holds for"))
 
 
 def _with_solution(record: Record, row: Sequence[str], run: Run | None = None) -> Row:

@@ -130,7 +130,8 @@ def grid_to_particles(model: Model) -> None:
     if (model.lost >= 0).any():
         lo = int(model.lost[model.lost >= 0][0])
         F = p.F[lo : lo + BLOCK]
-        J = F[:, 0, 0] * F[:, 1, 1] - F[:, 0, 1] * F[:, 1, 0]  # by the kernel's formula: det() rounds in another way
+        with np.errstate(all="ignore"):  # by the kernel's formula: det() rounds in another way
+            J = F[:, 0, 0] * F[:, 1, 1] - F[:, 0, 1] * F[:, 1, 0]
         fail(model, lo + int(np.flatnonzero(~((J > 0) & (J < np.inf)))[0]), "det F <= 0")
 
 

@@ -84,7 +84,7 @@ def reference_mpm(x: Floats, F: Floats, r0: Floats) -> tuple[Floats, Floats]:
 
 
 def reference_cpdi(x: Floats, F: Floats, r0: Floats) -> tuple[Floats, Floats]:
-    """PHYSICS 7.1 in its general form, from the corners and the shoelace area, not from side vectors."""
+    """The general form for quadrilaterals, from the corners and the shoelace area, not from side vectors."""
     (r1, r2), S = (F @ r0.T).T, []
     corner = np.array([x - r1 - r2, x + r1 - r2, x + r1 + r2, x - r1 + r2])
     (x1, y1), (x2, y2), (x3, y3), (x4, y4) = corner

@@ -1,6 +1,6 @@
 """Each check can fail: one defect at a time is planted into the small study, and the verdict turns; placebos keep it.
 
-What a solution cannot see (VERIFICATION 4) stands beside: the same defect stays a PASS there. Kernels are compiled for
+What a solution cannot see stands beside: the same defect stays a PASS there. Kernels are compiled for
 one signature, so defects are planted around them: in the load, the walls, the law, and what the law finds.
 """
 
@@ -221,7 +221,7 @@ def last_order(results: list[Result]) -> float:
 
 @pytest.mark.parametrize("solution", ["axis_aligned", "clamped_shear"])
 def test_without_a_defect(solution: str) -> None:
-    """PASS, order two; the registered errors of axis_aligned to 2 % (VERIFICATION 1)."""
+    """PASS, order two; the registered errors of axis_aligned to 2 % (ARCHITECTURE.md)."""
     results = sweep(nothing, solution)
     assert verdict(results).outcome is PASS
     assert last_order(results) == pytest.approx(2.0, abs=0.05)
@@ -293,7 +293,7 @@ def test_no_half_step_start() -> None:
     """Invisible to sin(wt), which starts without acceleration; order one with clamped_shear's 1 - cos(wt)."""
     blind = sweep(nothing, "axis_aligned", staggered=False)
     assert verdict(blind).outcome is PASS
-    assert finest(blind) == pytest.approx(4.43e-5, rel=0.02)  # PHYSICS 9.1; 4.50e-5 with the half-step start
+    assert finest(blind) == pytest.approx(4.43e-5, rel=0.02)  # 4.50e-5 with the half-step start
     seen = verdict(sweep(nothing, "clamped_shear", staggered=False))
     assert seen.outcome is not PASS
     assert "coupled" in seen.reason

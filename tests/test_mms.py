@@ -166,7 +166,7 @@ def test_moving_walls_follow_the_body() -> None:
     ],
 )
 def test_reference_values(X: float, Y: float, t: float, u: Any, b: Any) -> None:
-    """PHYSICS 9.1: L = 1, A = 0.05, C = 100, E = 1e4, nu = 0.3, rho0 = 1."""
+    """Recorded values: L = 1, A = 0.05, C = 100, E = 1e4, nu = 0.3, rho0 = 1."""
     exact = manufacture(create("mms.solutions", "axis_aligned"), create("solver.material", "neo_hookean"), 1.0)
     np.testing.assert_allclose(exact.u(np.array([[X, Y]]), t)[0], u, rtol=1e-9)
     np.testing.assert_allclose(exact.b(np.array([[X, Y]]), t)[0], b, rtol=1e-9)

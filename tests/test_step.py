@@ -178,7 +178,7 @@ def test_affine_body(name: str) -> None:
 @every_basis
 @pytest.mark.parametrize(("steps", "grown"), [(100, 2.5e-2), (1000, 2.5e-3)])
 def test_pure_rotation_inflates_f(name: str, steps: int, grown: float) -> None:
-    """(I + dt L) F with skew L: det F grows by 1 + w^2 dt^2 a step, and the radius by its root (PHYSICS 6.12)."""
+    """(I + dt L) F with skew L: det F grows by 1 + w^2 dt^2 a step, and the radius by its root."""
     m = model(name, lambda X: (np.abs(X - 0.5) < DX).all(axis=1), dt=1.0 / steps)
     p, w = m.particles, np.pi / 2
     skew = w * np.array([[0.0, -1.0], [1.0, 0.0]])
@@ -439,7 +439,7 @@ def test_force_runs_a_time_step_above_the_limit() -> None:
 
 
 def test_det_f_is_a_failed_result() -> None:
-    """Classical MPM with one particle a cell, as in VERIFICATION 1."""
+    """Classical MPM with one particle a cell, as in the table of ARCHITECTURE.md."""
     result, arrays = mms.execute(run(method="mpm", cells=16, ppc=1))
     assert (result.status, result.errors) == ("failed", {})
     failure = result.failure
