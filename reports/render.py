@@ -33,14 +33,15 @@ class Image:
     height: int
 
 
-def render(folder: Path, cells: int = CELLS, ppc: int = PPC) -> Path:
+def render(folder: Path, cells: int = CELLS, ppc: int = PPC, record: Record | None = None) -> Path:
     """Write report.html, figures/*.svg|pdf|png and tables/*.csv into a study folder; the path of the page.
 
-    The error field is that of the run of each method nearest to `cells` a side and `ppc` particles per cell.
+    The error field is that of the run of each method nearest to `cells` a side and `ppc` particles per cell. `record`
+    is what the folder holds, if somebody has read it already.
 
     Raises StoreError if the folder is no study folder, is broken, or cannot be written.
     """
-    record = read(folder)
+    record = record or read(folder)
     try:
         for name in ("figures", "tables"):
             (folder / name).mkdir(exist_ok=True)

@@ -10,9 +10,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-# Threads that spin while they wait starve each other and the worker processes beside them: five times slower on a busy
-# machine. Read once by the threading layer, so it is set before Numba is loaded.
-os.environ.setdefault("OMP_WAIT_POLICY", "passive")
+# Threads wait for each other five times a step. Those that spin as long as the OpenMP library likes starve whatever
+# shares their processors, each other included: five times slower on a busy machine. Those that never spin lose a fifth
+# on an idle one to being woken. So they spin for some ten microseconds. Read once, so set before Numba is loaded.
+os.environ.setdefault("GOMP_SPINCOUNT", "5000")
 
 import numba
 from numba import boolean, float64, int64, types, void

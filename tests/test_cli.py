@@ -64,7 +64,7 @@ def verify(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], 
 def quickly(monkeypatch: pytest.MonkeyPatch) -> None:
     """Known results in place of the solver, and no page."""
     monkeypatch.setattr(mms, "execute", lambda run, tick: (fixtures._result(run), {}))
-    monkeypatch.setattr("reports.render.render", lambda folder: folder / "report.html")
+    monkeypatch.setattr("reports.render.render", lambda folder, record=None: folder / "report.html")
     monkeypatch.setattr("verify.conduct.SMALL", float("inf"))  # worker processes would run the solver
 
 

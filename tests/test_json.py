@@ -94,7 +94,9 @@ def test_junit_of_the_real_study(real: tuple[subprocess.CompletedProcess[str], P
 def told(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> Callable[..., Any]:
     """Call the command with results changed by a function; exit code, document, JUnit suite."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("reports.render.render", lambda folder: folder / "report.html")  # two seconds a page
+    monkeypatch.setattr(
+        "reports.render.render", lambda folder, record=None: folder / "report.html"
+    )  # two seconds a page
 
     def tell(change: Change = lambda result: result, *arguments: str) -> tuple[int, Json, ElementTree.Element]:
         monkeypatch.setattr(mms, "execute", lambda run, tick: (change(fixtures._result(run)), {}))

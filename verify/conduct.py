@@ -4,6 +4,7 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -48,8 +49,9 @@ def conduct(study: Study, settings: Settings) -> int:
     """Run, judge, report; returns the exit code."""
     with usage():
         from cases.store import Store
-        from cases.verdicts import exit_code, findings
+        from cases.verdicts import exit_code
         from reports.render import render
+        from reports.stored import Record
         from verify.document import document
         from verify.junit import check_junit, write_junit
         from verify.output import printing
@@ -60,8 +62,9 @@ def conduct(study: Study, settings: Settings) -> int:
         store.create(study)
         with store.locked():
             results = compute(study, store, settings)
-            found = findings(study, results)
-            page = render(settings.folder)
+            record = Record(store, study, results, earlier=False)
+            found = record.findings
+            page = render(settings.folder, record=record)
         if settings.junit:
             write_junit(settings.junit, study, found)
         with printing():
@@ -82,6 +85,11 @@ def compute(study: Study, store: "Store", settings: Settings) -> dict[str, Resul
     with progress(waiting, cost) as bar:
         if jobs > 1 and sum(map(cost, waiting)) > SMALL:
             with process_pool(jobs) as (executor, heard):
-                return run_study(study, store, executor, settings.threads, bar.done, lambda: bar.hear(heard()))
+
+                def poll() -> None:
+                    bar.hear(heard())
+                    import_module("reports.render")  # takes a second, now that the workers are busy
+
+                return run_study(study, store, executor, settings.threads, bar.done, poll)
         Ticker.tell = staticmethod(lambda news: bar.hear([news]))
         return run_study(study, store, InProcess(), settings.threads, bar.done)

@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import asdict, dataclass
+from functools import cache
 from math import ceil, sqrt
 from pathlib import Path
 from typing import Any
@@ -58,7 +59,7 @@ def setup(run: Run) -> tuple[Model, Comparison, int]:
     dt = solution.duration / steps
     behind = 0.5 * dt if run.staggered else 0.0
 
-    exact = manufacture(solution, material, material.rho0)
+    exact = manufactured(run.solution, run.material)
     X = particles.X
     particles.x, particles.v = exact.x(X, 0.0), exact.v(X, -behind)
     particles.F, particles.sigma = exact.F(X, 0.0), exact.sigma(X, 0.0)
@@ -68,6 +69,13 @@ def setup(run: Run) -> tuple[Model, Comparison, int]:
     model = Model(grid, particles, basis, material, walls, dt, scheme)
     norms = Norms(len(particles), float(particles.V0.mean()))
     return model, Comparison(exact, norms, new_shares(particles), behind), steps
+
+
+@cache
+def manufactured(solution: str, material: str) -> Manufactured:
+    """The exact solution of two specifications, derived and compiled once in a process."""
+    law: Any = create("solver.material", material)
+    return manufacture(create("mms.solutions", solution), law, law.rho0)
 
 
 def execute(run: Run, tick: Callable[[float], None] = lambda share: None) -> tuple[Result, Arrays]:
