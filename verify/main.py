@@ -1,5 +1,7 @@
 """The command `verify`: one file a subcommand, each a few lines that call down. Nothing heavy is imported here."""
 
+import contextlib
+import os
 import sys
 import traceback
 from typing import Annotated
@@ -70,5 +72,15 @@ def complain(message: str) -> int:
     return USAGE
 
 
+def run() -> None:
+    """The console script: main, and out. Python takes half a second to take the libraries apart, for nothing."""
+    try:
+        main()
+    except SystemExit as end:
+        with contextlib.suppress(OSError, ValueError):
+            sys.stdout.flush()
+        os._exit(end.code if isinstance(end.code, int) else 0)
+
+
 if __name__ == "__main__":
-    main()
+    run()

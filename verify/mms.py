@@ -12,7 +12,7 @@ from verify.choices import choices, completion, integers
 
 METHODS, SOLUTIONS, MATERIALS = "solver.basis", "mms.solutions", "solver.material"
 USUAL = {"cells": "8,16,32,64,128", "ppc": "1,4,9"}
-QUICK = {"cells": "8,16,24,32,48", "ppc": "4"}
+QUICK = {"cells": "8,12,16,24,32", "ppc": "4"}
 
 
 def mms(
@@ -46,7 +46,7 @@ def mms(
     staggered: Annotated[bool, typer.Option(help="Start v half a step behind x.")] = True,
     jobs: Annotated[int | None, typer.Option(help="Runs at a time.", show_default="processors / threads")] = None,
     threads: Annotated[int, typer.Option(help="Threads of one run; any number gives the same bits.")] = 1,
-    quick: Annotated[bool, typer.Option("--quick", help="8,16,24,32,48 cells with 4 particles each.")] = False,
+    quick: Annotated[bool, typer.Option("--quick", help="8,12,16,24,32 cells with 4 particles each.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Run time steps above the stability limit too.")] = False,
     out: Annotated[Path | None, typer.Option(help="Study folder.", show_default="results/NAME-OF-THE-STUDY")] = None,
     json_output: Annotated[
