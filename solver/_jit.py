@@ -12,8 +12,8 @@ from typing import Any
 
 # Threads wait for each other five times a step. Those that spin as long as the OpenMP library likes starve whatever
 # shares their processors, each other included: five times slower on a busy machine. Those that never spin lose a fifth
-# on an idle one to being woken. So they spin for some ten microseconds. Read once, so set before Numba is loaded.
-os.environ.setdefault("GOMP_SPINCOUNT", "5000")
+# on an idle one to being woken. So they spin for less than 0.1 ms. Read once, so set before Numba is loaded.
+os.environ.setdefault("GOMP_SPINCOUNT", "20000")
 
 import numba
 from numba import boolean, float64, int64, types, void
