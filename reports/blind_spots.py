@@ -22,9 +22,9 @@ UNIFORM = (
 )
 ALWAYS = (
     (
-        "Orders alone let defects pass. In a probe apart from this program, of 46 defects planted in a CPDI code the order "
-        "of the displacement caught 33, the orders of all quantities 36, and all checks together, exactness and physics "
-        "among them, 44."
+        "Orders alone let defects pass. In a probe apart from this program, of 46 defects planted in a CPDI code, "
+        "the order of the displacement caught 33, the orders of all quantities 36, and all checks together, "
+        "exactness and physics among them, 44."
     ),
     "A wrong constant leaves the order as it is; only a recorded magnitude sees it.",
 )
