@@ -24,9 +24,8 @@ from pydantic import TypeAdapter, ValidationError
 from cases.study import FORMAT, Result, Study
 
 Arrays = dict[str, "np.ndarray[Any, np.dtype[np.float32]]"]
-
-
 HOUR = 3600.0
+STUDY, RESULT = TypeAdapter(Study), TypeAdapter(Result)  # built once: it takes longer than to read a file
 
 
 class StoreError(Exception):
@@ -42,12 +41,7 @@ class Store:
 
     def create(self, study: Study) -> None:
         """Make the folder and write study.json; Results already there stay, a broken study.json is not written over."""
-        try:
-            self.runs.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise StoreError(
-                f"cannot make the study folder {self.folder}: {error.strerror}; give a writable one with --out"
-            ) from error
+        self._make()
         for leftover in self.runs.glob(".*"):  # of a process that was killed while it wrote
             with suppress(FileNotFoundError):
                 if time.time() - leftover.stat().st_mtime > HOUR:
@@ -59,7 +53,7 @@ class Store:
     def study(self) -> Study:
         """The Study of this folder."""
         path = self.folder / "study.json"
-        study: Study = self._read(path, TypeAdapter(Study))
+        study: Study = self._read(path, STUDY)
         return study
 
     def put(self, result: Result, arrays: Arrays) -> None:
@@ -75,7 +69,7 @@ class Store:
         path = self.runs / f"{digest}.json"
         if not path.exists():
             return None
-        result: Result = self._read(path, TypeAdapter(Result))
+        result: Result = self._read(path, RESULT)
         return result
 
     def arrays(self, digest: str) -> Arrays:
@@ -108,12 +102,26 @@ class Store:
     @contextmanager
     def locked(self) -> Iterator[None]:
         """Hold the folder for this process; another that asks meanwhile gets a StoreError, and not the same runs."""
-        with (self.folder / ".lock").open("w") as file:
-            try:
-                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except OSError as error:
-                raise StoreError(f"another verify works in {self.folder}; wait for it or give another --out") from error
+        self._make()
+        handle = os.open(self.folder, os.O_RDONLY)  # the folder itself: a file for it would be one more in the study
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError as error:
+            os.close(handle)
+            raise StoreError(f"another verify works in {self.folder}; wait for it or give another --out") from error
+        try:
             yield
+        finally:
+            os.close(handle)
+
+    def _make(self) -> None:
+        """The folder, new or there."""
+        try:
+            self.runs.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise StoreError(
+                f"cannot make the study folder {self.folder}: {error.strerror}; give a writable one with --out"
+            ) from error
 
     @staticmethod
     def write(path: Path, data: bytes) -> None:

@@ -4,8 +4,7 @@ Particles are sorted into slabs of `width` grid columns. Slabs of one colour (ev
 time and never touch the same node: the box given to a fill is the slab and a guard of (width - 1) // 2 columns. So
 there are no atomics and no copies, and each node's sum has one order: the same bits for any number of threads.
 
-The parallel kernels are thin, and call one that is compiled apart: what stands inside a prange takes far longer to
-compile.
+The parallel kernels are thin, and call one that is compiled apart: what stands inside a prange takes longer to compile.
 """
 
 import numpy as np

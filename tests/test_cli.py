@@ -16,6 +16,7 @@ import fixtures_study as fixtures
 import pytest
 
 from cases.library import mms
+from cases.store import Store
 from cases.study import NORMS, QUANTITIES, Result
 from solver.plugins import available
 from verify.main import main
@@ -125,6 +126,14 @@ BAD = {
 def stored(tmp_path: Path) -> Path:
     """A study folder with Results, which no bad input may touch."""
     return fixtures.make(tmp_path / "stored", ("cpdi",), largest=8)
+
+
+def test_a_study_under_way_keeps_its_folder(verify: Verify, stored: Path) -> None:
+    """Whoever comes second is refused before it writes anything, its own study.json included."""
+    with Store(stored).locked():
+        before = content(stored)
+        assert "another verify works in" in verify("mms", "--cells", "8,16", "--out", str(stored)).line
+        assert content(stored) == before
 
 
 @pytest.mark.parametrize("name", BAD)

@@ -275,3 +275,11 @@ def test_no_pickles_are_read(store: Store) -> None:
     np.savez(store.runs / f"{RUN.digest}.npz", x=np.array([{}], dtype=object))
     with pytest.raises(StoreError, match="cannot read"):
         store.arrays(RUN.digest)
+
+
+def test_a_folder_in_use_is_refused_and_left_as_it_is(store: Store) -> None:
+    before = (store.folder / "study.json").read_bytes()
+    with store.locked(), pytest.raises(StoreError, match="another verify works in"), Store(store.folder).locked():
+        pytest.fail("two hold the folder")
+    with store.locked():
+        assert (store.folder / "study.json").read_bytes() == before

@@ -59,8 +59,8 @@ def conduct(study: Study, settings: Settings) -> int:
 
         check_junit(settings.junit)
         store = Store(settings.folder)
-        store.create(study)
-        with store.locked():
+        with store.locked():  # before study.json is written: whoever is refused leaves the other's study as it is
+            store.create(study)
             results = compute(study, store, settings)
             record = Record(store, study, results, earlier=False)
             found = record.findings
