@@ -7,9 +7,7 @@ from typing import Any
 
 from cases.expectations import expected
 from cases.study import NORMS, QUANTITIES, Declared, Run, Study
-from solver.plugins import available, create
-
-METHODS, SOLUTIONS, MATERIALS = "solver.basis", "mms.solutions", "solver.material"
+from solver.plugins import MATERIALS, METHODS, SOLUTIONS, available, create
 
 
 @dataclass(frozen=True)

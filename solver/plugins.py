@@ -6,13 +6,20 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
-KINDS = {"solver.basis": "method", "solver.material": "material", "mms.solutions": "solution", "cases.library": "case"}
+from solver.sources import TOP
+
+METHODS, MATERIALS, SOLUTIONS, CASES = "solver.basis", "solver.material", "mms.solutions", "cases.library"
+KINDS = {METHODS: "method", MATERIALS: "material", SOLUTIONS: "solution", CASES: "case"}
 
 
 def available(package: str) -> list[str]:
     """Names of the plug-ins in a package such as `solver.basis`, found without importing anything."""
-    folder = Path(__file__).resolve().parent.parent.joinpath(*package.split("."))
-    return sorted(file.stem for file in folder.glob("*.py") if not file.stem.startswith("_"))
+    return sorted(file.stem for file in folder(package).glob("*.py") if not file.stem.startswith("_"))
+
+
+def folder(package: str) -> Path:
+    """Where the files of a package are."""
+    return TOP.joinpath(*package.split("."))
 
 
 def load(package: str, name: str) -> Any:

@@ -1,32 +1,23 @@
 """`verify list`: what there is to choose from. Reads file names and docstrings, imports nothing."""
 
 import ast
-from pathlib import Path
 
 import typer
 
-from solver.plugins import available
+from solver.plugins import CASES, KINDS, MATERIALS, METHODS, SOLUTIONS, available, folder
 from verify.output import printing
-
-KINDS = {
-    "cases": "cases.library",
-    "methods": "solver.basis",
-    "solutions": "mms.solutions",
-    "materials": "solver.material",
-}
 
 
 def list_plugins() -> None:
     """List cases, methods, solutions and materials with a line about each."""
     with printing():
-        for kind, package in KINDS.items():
-            typer.echo(kind)
+        for package in (CASES, METHODS, SOLUTIONS, MATERIALS):
+            typer.echo(f"{KINDS[package]}s")
             for name in available(package):
                 typer.echo(f"  {name:16}{summary(package, name)}")
 
 
 def summary(package: str, name: str) -> str:
     """First sentence of a plug-in's docstring, without importing it."""
-    folder = Path(__file__).resolve().parent.parent.joinpath(*package.split("."))
-    text = ast.get_docstring(ast.parse((folder / f"{name}.py").read_text())) or ""
+    text = ast.get_docstring(ast.parse((folder(package) / f"{name}.py").read_text())) or ""
     return text.partition("\n")[0]

@@ -8,9 +8,9 @@ from typing import Annotated
 
 import typer
 
+from solver.plugins import MATERIALS, METHODS, SOLUTIONS
 from verify.choices import choices, completion, integers
 
-METHODS, SOLUTIONS, MATERIALS = "solver.basis", "mms.solutions", "solver.material"
 USUAL = {"cells": "8,16,32,64,128", "ppc": "1,4,9"}
 QUICK = {"cells": "8,12,16,24,32", "ppc": "4"}
 

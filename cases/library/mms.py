@@ -19,7 +19,7 @@ from cases.store import Arrays
 from cases.study import QUANTITIES, Failure, Result, Run
 from mms.manufacture import Manufactured, manufacture
 from solver.boundary import box, moving
-from solver.plugins import create, load
+from solver.plugins import MATERIALS, METHODS, SOLUTIONS, create, load
 from solver.state import Floats, Grid, Particles, fill_rectangle
 from solver.step import Model, RunFailed, Scheme, advance, check_time_step
 
@@ -49,8 +49,8 @@ def setup(run: Run) -> tuple[Model, Comparison, int]:
 
     dt = courant dx / C, shortened so that whole steps fill the duration. x, F and sigma start exact, v exact at -dt/2.
     """
-    solution: Any = create("mms.solutions", run.solution)
-    material: Any = create("solver.material", run.material)
+    solution: Any = create(SOLUTIONS, run.solution)
+    material: Any = create(MATERIALS, run.material)
     dx = float(solution.upper[0] - solution.lower[0]) / run.cells
     margin = dx * ceil(solution.margin / dx)
     grid = Grid(dx, solution.lower - margin, solution.upper + margin)
@@ -64,7 +64,7 @@ def setup(run: Run) -> tuple[Model, Comparison, int]:
     particles.x, particles.v = exact.x(X, 0.0), exact.v(X, -behind)
     particles.F, particles.sigma = exact.F(X, 0.0), exact.sigma(X, 0.0)
     particles.carried = exact.kernel.columns(X)
-    scheme, basis = Scheme(run.flip, run.staggered), load("solver.basis", run.method)()
+    scheme, basis = Scheme(run.flip, run.staggered), load(METHODS, run.method)()
     walls = moving(grid, solution.walls) if solution.boundary == "moving" else box(grid, solution.boundary)
     model = Model(grid, particles, basis, material, walls, dt, scheme)
     norms = Norms(len(particles), float(particles.V0.mean()))
@@ -74,8 +74,8 @@ def setup(run: Run) -> tuple[Model, Comparison, int]:
 @cache
 def manufactured(solution: str, material: str) -> Manufactured:
     """The exact solution of two specifications, derived and compiled once in a process."""
-    law: Any = create("solver.material", material)
-    return manufacture(create("mms.solutions", solution), law, law.rho0)
+    law: Any = create(MATERIALS, material)
+    return manufacture(create(SOLUTIONS, solution), law, law.rho0)
 
 
 def execute(run: Run, tick: Callable[[float], None] = lambda share: None) -> tuple[Result, Arrays]:
@@ -148,7 +148,7 @@ def snapshot(model: Model, comparison: Comparison) -> Arrays:
 
 def parameters(kind: str, specification: str) -> dict[str, float]:
     """Every parameter of a solution or material, the defaults too."""
-    package = {"solution": "mms.solutions", "material": "solver.material"}[kind]
+    package = {"solution": SOLUTIONS, "material": MATERIALS}[kind]
     return {f"{kind} {key}": value for key, value in asdict(create(package, specification)).items()}
 
 
