@@ -33,7 +33,8 @@ class Run:
     """One frozen point of a sweep; its digest is its name.
 
     `solution` and `material` are specifications: a name, or a name with parameters (`axis_aligned:A=0.01,phase=0.5`).
-    `courant` is C dt / dx, with C the reference speed of the solution.
+    `courant` is C dt / dx, with C the reference speed of the solution. `offset` shifts the particles in their cells, by
+    shares of their spacing; `layout` says how they are spread.
     """
 
     method: str
@@ -46,6 +47,8 @@ class Run:
     staggered: bool = True
     force: bool = False
     case: str = "mms"
+    offset: tuple[float, float] = (0.0, 0.0)
+    layout: str = "uniform"
 
     def __post_init__(self) -> None:
         if self.cells < 1 or self.ppc < 1 or not 0 < self.courant < inf:
@@ -90,6 +93,8 @@ class Result:
     floor: dict[str, float] = field(default_factory=dict)  # round-off floor of the quantity
     failure: Failure | None = None
     environment: dict[str, str] = field(default_factory=dict)
+    crossings: int = 0  # faces of cells that particles passed
+    cpu_s: float = 0.0  # processor time of the steps, all threads
     parameters: dict[str, float] = field(default_factory=dict)  # of solution and material, the defaults too
     format: int = FORMAT
 

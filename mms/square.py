@@ -1,10 +1,11 @@
 """What the solutions on a square have in common: the domain, the reference speed and the duration."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
+from solver.layout import CENTRED, Layout, Offset, rectangle
 from solver.state import Floats
 
 
@@ -14,6 +15,7 @@ class Square:
 
     L: float = 1.0
     C: float = 100.0
+    material: ClassVar[str] = "neo_hookean"  # what a study of it takes if nothing else is asked for
 
     def __post_init__(self) -> None:
         if not (self.L > 0 and self.C > 0):
@@ -28,6 +30,10 @@ class Square:
     def upper(self) -> Floats:
         """Upper corner of the domain, (2,)."""
         return np.full(2, self.L)
+
+    def layout(self, dx: float, ppc: int, offset: Offset = CENTRED) -> Layout:
+        """Square domains, `ppc` in a cell of side dx."""
+        return rectangle(self.lower, self.upper, dx, ppc, offset)
 
     @property
     def margin(self) -> float:

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 from numba import prange
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from solver._jit import F1, F2, f8, flag, i8, kernel, nothing
 from solver.state import Floats, Grid
 
-Kind = Literal["roller", "fixed"]
+Kind = Literal["roller", "fixed", "free"]
 MASS_CUTOFF = 1e-12  # of a particle's mass: below it a node's velocity is 0/0
 
 
@@ -51,18 +51,23 @@ def moving(grid: Grid, rule: Rule) -> MovingWalls:
     return MovingWalls(*rule(grid.nodes, 0.0, 0.0), rule)
 
 
-def box(grid: Grid, kind: Kind) -> Walls:
+def box(grid: Grid, kind: Kind | tuple[Kind, Kind, Kind, Kind]) -> Walls:
     """Walls on the four sides of the domain: on them and behind them, where corners of domains may reach.
 
-    A roller holds the normal component, a fixed wall both. Raises ValueError for another kind.
+    A roller holds the normal component, a fixed wall both, and free means that there is none. `kind` is for all sides,
+    or one for each of left, right, bottom, top. Raises ValueError for another kind.
     """
-    if kind not in ("roller", "fixed"):
-        raise ValueError(f"no wall {kind!r}; choose from roller, fixed")
-    slack = 1e-9 * grid.dx
-    behind = (grid.nodes <= grid.lower + slack) | (grid.nodes >= grid.upper - slack)
-    if kind == "fixed":
-        behind = np.repeat(behind.any(axis=1, keepdims=True), 2, axis=1)
-    return Walls(np.ascontiguousarray(behind), np.zeros(behind.shape), np.zeros(behind.shape))
+    kinds = (kind,) * 4 if isinstance(kind, str) else kind
+    for name in kinds:
+        if name not in get_args(Kind):
+            raise ValueError(f"no wall {name!r}; choose from {', '.join(get_args(Kind))}")
+    slack, held = 1e-9 * grid.dx, np.zeros(grid.nodes.shape, dtype=bool)
+    behind = (grid.nodes <= grid.lower + slack, grid.nodes >= grid.upper - slack)
+    for side, name in enumerate(kinds):
+        axis, there = side // 2, behind[side % 2][:, side // 2]
+        held[there, axis] |= name != "free"
+        held[there, 1 - axis] |= name == "fixed"
+    return Walls(held, np.zeros(held.shape), np.zeros(held.shape))
 
 
 @kernel(nothing(F1, F2, F2, flag[:, ::1], F2, F2, f8, f8, i8), parallel=True)

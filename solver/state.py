@@ -1,7 +1,6 @@
 """Grid and Particles: structures of arrays, float64, C order; plane strain, one system of units."""
 
 from dataclasses import dataclass, field, fields
-from math import isqrt
 from typing import Any
 
 import numpy as np
@@ -66,14 +65,14 @@ class Particles:
     """State of P particles. Rows are kept in an order that suits the grid; `id` (P,) is the row in the initial layout.
 
     X, x, v, b (P,2): reference place, place, velocity, body force per mass; F (P,2,2); sigma (P,4): Cauchy stress
-    xx, yy, zz, xy, tension positive; m, V0 (P,): mass, initial volume; r0 (P,2,2): initial half side vectors of the
-    domain, one a row; carried (P,C): numbers of the caller that travel with their particle.
+    xx, yy, zz, xy, tension positive; m, V0 (P,): mass, initial volume; domain (P,W): what the basis keeps of the
+    particle's domain; carried (P,C): numbers of the caller that travel with their particle.
     """
 
     X: Floats
     m: Floats
     V0: Floats
-    r0: Floats
+    domain: Floats
     x: Floats = field(init=False)
     v: Floats = field(init=False)
     b: Floats = field(init=False)
@@ -101,23 +100,3 @@ class Particles:
         array = np.empty_like(getattr(self, name))
         array[self.id] = getattr(self, name)
         return array
-
-
-def fill_rectangle(
-    grid: Grid, ppc: int, rho0: float, lower: Floats | None = None, upper: Floats | None = None
-) -> Particles:
-    """Regular layout of `ppc` particles in each cell, column by column; square domains that tile the rectangle.
-
-    `lower`, `upper` (2,): corners of the body, on cell faces; the whole domain of the grid by default. Raises
-    ValueError where `ppc` is no square number.
-    """
-    side = isqrt(max(ppc, 0))
-    if side < 1 or side * side != ppc:
-        raise ValueError(f"{ppc} particles per cell is no square number; choose 1, 4, 9, 16, ...")
-    first, last = (grid.lower if lower is None else lower), (grid.upper if upper is None else upper)
-    step = grid.dx / side
-    counts = np.rint((last - first) / step).astype(int)
-    axes = [first[a] + step * (np.arange(counts[a]) + 0.5) for a in (0, 1)]
-    X = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
-    V0 = np.full(len(X), step * step)
-    return Particles(X=X, m=rho0 * V0, V0=V0, r0=np.tile(0.5 * step * np.eye(2), (len(X), 1, 1)))

@@ -68,10 +68,17 @@ class Model:
     steps: int = 0
     slabs: Slabs = field(default_factory=Slabs)
     lost: Ints = field(init=False)
+    crossed: Ints = field(init=False)
 
     def __post_init__(self) -> None:
         self.lost = np.full(-(-len(self.particles) // CHUNK), -1)
+        self.crossed = np.zeros(len(self.lost), np.int64)
         self.slabs.sort(self.grid, self.particles)
+
+    @property
+    def crossings(self) -> int:
+        """Faces of cells that particles have passed so far."""
+        return int(self.crossed.sum())
 
     @property
     def time(self) -> float:
@@ -102,8 +109,9 @@ def particles_to_grid(model: Model) -> None:
     g, p, s = model.grid, model.particles, model.slabs
     for attempt in range(8):
         p2g(
-            model.basis.fill, model.basis.support, s.start, s.width, p.x, p.v, p.F, p.sigma, p.m, p.V0, p.b, p.r0,
-            g.origin, 1.0 / g.dx, g.nx, g.ny, g.mass, g.given, s.strayed,
+            model.basis.fill, model.basis.support, model.basis.width, s.start, s.width,
+            p.x, p.v, p.F, p.sigma, p.m, p.V0, p.b, p.domain.ravel(), g.origin, 1.0 / g.dx, g.nx, g.ny,
+            g.mass, g.given, s.strayed,
         )  # fmt: skip
         if (s.strayed < 0).all():
             return
@@ -124,9 +132,10 @@ def grid_to_particles(model: Model) -> None:
     """v, x and F at the end of the step."""
     g, p = model.grid, model.particles
     g2p(
-        model.basis.fill, model.basis.support, p.x, p.v, p.F, p.r0, g.origin, 1.0 / g.dx, g.nx, g.ny,
-        g.motion, model.dt, model.scheme.flip, model.lost,
+        model.basis.fill, model.basis.support, model.basis.width, p.x, p.v, p.F, p.domain.ravel(), g.origin, 1.0 / g.dx,
+        g.nx, g.ny, g.motion, model.dt, model.scheme.flip, model.lost, model.crossed,
     )  # fmt: skip
+    model.basis.convect(p, g, model.dt)
     if (model.lost >= 0).any():
         lo = int(model.lost[model.lost >= 0][0])
         F = p.F[lo : lo + BLOCK]
@@ -141,10 +150,10 @@ def refuse_outside(model: Model, blocks: Ints) -> None:
     table, node = np.empty(3 * model.basis.support * BLOCK), np.empty(model.basis.support * BLOCK, np.int64)
     for lo in blocks:
         for i in range(lo, min(lo + BLOCK, len(p))):
-            arrays = (p.x[i], p.F[i].ravel(), p.r0[i].ravel())
+            arrays = (p.x[i], p.F[i].ravel(), p.domain[i])
             box = (0.0, g.nx - 1.0, 0.0, g.ny - 1.0)
-            if not model.basis.fill(*arrays, *g.origin, 1.0 / g.dx, g.ny, *box, table, node):
-                fail(model, i, "the particle or a corner of its domain is outside the grid")
+            if not model.basis.fill(*arrays, *g.origin, 1.0 / g.dx, g.nx, g.ny, *box, table, node):
+                fail(model, i, model.basis.limit)
 
 
 def fail(model: Model, row: int, reason: str) -> None:

@@ -50,28 +50,29 @@ def scatter(K, lo, hi, v, F, sigma, m, V0, b, table, node, mass, given):
             given[i, 3] = force_y
 
 
-@kernel(i8(Fill, i8, i8, i8, F2, F2, F3, F2, F1, F1, F2, F3, F1, f8, i8, f8, f8, F1, F2))
-def p2g_slab(fill, K, start, end, x, v, F, sigma, m, V0, b, r0, origin, inv_dx, ny, left, right, mass, given):
+@kernel(i8(Fill, i8, i8, i8, i8, F2, F2, F3, F2, F1, F1, F2, F1, F1, f8, i8, i8, f8, f8, F1, F2))
+def p2g_slab(
+    fill, K, W, start, end, x, v, F, sigma, m, V0, b, domain, origin, inv_dx, nx, ny, left, right, mass, given
+):  # fmt: skip
     """The particles start ... end-1; -1, or the first particle of the block that reaches out of the box."""
     xs = x.reshape(-1)
     Fs = F.reshape(-1)
-    rs = r0.reshape(-1)
     table = np.empty(3 * K * BLOCK)
     node = np.empty(K * BLOCK, np.int64)
     for lo in range(start, end, BLOCK):
         hi = min(lo + BLOCK, end)
         if not fill(
-            xs[2 * lo : 2 * hi], Fs[4 * lo : 4 * hi], rs[4 * lo : 4 * hi],
-            origin[0], origin[1], inv_dx, ny, left, right, 0.0, ny - 1.0, table, node,
+            xs[2 * lo : 2 * hi], Fs[4 * lo : 4 * hi], domain[W * lo : W * hi],
+            origin[0], origin[1], inv_dx, nx, ny, left, right, 0.0, ny - 1.0, table, node,
         ):  # fmt: skip
             return lo
         scatter(K, lo, hi, v, F, sigma, m, V0, b, table, node, mass, given)
     return -1
 
 
-@kernel(nothing(Fill, i8, I1, i8, F2, F2, F3, F2, F1, F1, F2, F3, F1, f8, i8, i8, F1, F2, I1), parallel=True)
-def p2g(fill, K, start, width, x, v, F, sigma, m, V0, b, r0, origin, inv_dx, nx, ny, mass, given, strayed):
-    """Sums of all particles on the grid.
+@kernel(nothing(Fill, i8, i8, I1, i8, F2, F2, F3, F2, F1, F1, F2, F1, F1, f8, i8, i8, F1, F2, I1), parallel=True)
+def p2g(fill, K, W, start, width, x, v, F, sigma, m, V0, b, domain, origin, inv_dx, nx, ny, mass, given, strayed):
+    """Sums of all particles on the grid; `domain` is flat, W numbers a particle.
 
     `start` (S+1,) bounds the particles of each slab. `strayed` (S,) is -1, or the first particle of a block that
     reaches out of its slab's box; the sums are then incomplete and not to be used.
@@ -86,8 +87,8 @@ def p2g(fill, K, start, width, x, v, F, sigma, m, V0, b, r0, origin, inv_dx, nx,
             left = max(0.0, float(s * width - guard))
             right = min(nx - 1.0, float((s + 1) * width + guard))
             strayed[s] = p2g_slab(
-                fill, K, start[s], start[s + 1], x, v, F, sigma, m, V0, b, r0, origin, inv_dx, ny, left, right,
-                mass, given,
+                fill, K, W, start[s], start[s + 1], x, v, F, sigma, m, V0, b, domain, origin, inv_dx, nx, ny,
+                left, right, mass, given,
             )  # fmt: skip
 
 
@@ -140,34 +141,55 @@ def invertible(F):
     return bad == 0
 
 
-@kernel(i8(Fill, i8, i8, i8, F2, F2, F3, F3, F1, f8, i8, i8, F2, f8, f8))
-def g2p_chunk(fill, K, start, end, x, v, F, r0, origin, inv_dx, nx, ny, motion, dt, flip):
-    """The particles start ... end-1; -1, or the first particle of the first block in which one has lost its det F."""
+@kernel(inline=True)
+def cells_of(x, ox, oy, inv_dx, cells):
+    """Cell numbers of a block, x flat: columns, then rows."""
+    for b in range(x.shape[0] // 2):
+        cells[b] = np.floor((x[2 * b] - ox) * inv_dx)
+        cells[BLOCK + b] = np.floor((x[2 * b + 1] - oy) * inv_dx)
+
+
+@kernel(i8(Fill, i8, i8, i8, i8, F2, F2, F3, F1, F1, f8, i8, i8, F2, f8, f8, I1))
+def g2p_chunk(fill, K, W, start, end, x, v, F, domain, origin, inv_dx, nx, ny, motion, dt, flip, crossed):
+    """The particles start ... end-1; -1, or the first particle of the first block in which one has lost its det F.
+
+    Adds to crossed (1,) the faces of cells that they passed.
+    """
     xs = x.reshape(-1)
     Fs = F.reshape(-1)
-    rs = r0.reshape(-1)
     table = np.empty(3 * K * BLOCK)
     node = np.empty(K * BLOCK, np.int64)
+    before = np.zeros(2 * BLOCK)
+    after = np.zeros(2 * BLOCK)
     lost = -1
     for lo in range(start, end, BLOCK):
         hi = min(lo + BLOCK, end)
         fill(
-            xs[2 * lo : 2 * hi], Fs[4 * lo : 4 * hi], rs[4 * lo : 4 * hi],
-            origin[0], origin[1], inv_dx, ny, 0.0, nx - 1.0, 0.0, ny - 1.0, table, node,
+            xs[2 * lo : 2 * hi], Fs[4 * lo : 4 * hi], domain[W * lo : W * hi],
+            origin[0], origin[1], inv_dx, nx, ny, 0.0, nx - 1.0, 0.0, ny - 1.0, table, node,
         )  # fmt: skip
+        cells_of(xs[2 * lo : 2 * hi], origin[0], origin[1], inv_dx, before)
         gather(K, lo, hi, x, v, F, motion, dt, flip, table, node)
+        cells_of(xs[2 * lo : 2 * hi], origin[0], origin[1], inv_dx, after)
+        passed = 0
+        for b in range(2 * BLOCK):
+            passed += int(before[b] != after[b])
+        crossed[0] += passed
         if lost < 0 and not invertible(Fs[4 * lo : 4 * hi]):
             lost = lo
     return lost
 
 
-@kernel(nothing(Fill, i8, F2, F2, F3, F3, F1, f8, i8, i8, F2, f8, f8, I1), parallel=True)
-def g2p(fill, K, x, v, F, r0, origin, inv_dx, nx, ny, motion, dt, flip, lost):
+@kernel(nothing(Fill, i8, i8, F2, F2, F3, F1, F1, f8, i8, i8, F2, f8, f8, I1, I1), parallel=True)
+def g2p(fill, K, W, x, v, F, domain, origin, inv_dx, nx, ny, motion, dt, flip, lost, crossed):
     """FLIP velocity with a share (1 - flip) of PIC, place, and F <- (I + dt L) F (paper eq. (4)) of all particles.
 
-    `lost` (chunks,) is -1, or the first particle of a block in which one has lost its det F.
+    `lost` (chunks,) is -1, or the first particle of a block in which one has lost its det F; `crossed` (chunks,) counts
+    on: the faces of cells that particles passed.
     """
     for c in prange(lost.shape[0]):
         start = c * CHUNK
         end = min(x.shape[0], start + CHUNK)
-        lost[c] = g2p_chunk(fill, K, start, end, x, v, F, r0, origin, inv_dx, nx, ny, motion, dt, flip)
+        lost[c] = g2p_chunk(
+            fill, K, W, start, end, x, v, F, domain, origin, inv_dx, nx, ny, motion, dt, flip, crossed[c : c + 1]
+        )

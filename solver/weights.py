@@ -7,33 +7,53 @@ The table of a basis with K neighbours a particle, for a block of BLOCK particle
     table[(K + k)*B + b]       dN/dx
     table[(2*K + k)*B + b]     dN/dy
 
-A fill sees the arrays of its block alone, flat: x[2*b + axis], F[4*b + 2*row + column], r0[4*b + 2*side + axis]. Both
-layouts are there for the compiler: with fixed distances between the streams, and as few arrays as this, it works on
-eight particles at once (five times faster than a table [b, k]). So, in a fill: no branch, no division but the one
-needed, floor() for the cell.
+A fill sees the arrays of its block alone, flat: x[2*b + axis], F[4*b + 2*row + column], and domain[W*b + entry], W
+numbers that the basis keeps of each particle's domain. Both layouts are there for the compiler: with fixed distances
+between the streams, and as few arrays as this, it works on eight particles at once (five times faster than a table
+[b, k]). So, in a fill: no branch, no division but the one needed, floor() for the cell.
 
 A fill returns False, and its table is not used, if a neighbour lies outside `box` = (x0, x1, y0, y1), in cells from the
-grid's origin. Comparisons are written so that a NaN lies outside.
+grid's origin. Comparisons are written so that a NaN lies outside. The walls of the grid stand PAD cells inside its nx
+by ny nodes.
 """
 
 from collections.abc import Callable
-from typing import ClassVar, Protocol
+from typing import ClassVar
 
 import numpy as np
 
 from solver._jit import BLOCK, F1, I1, f8, flag, function_type, i8, kernel
+from solver.layout import Layout
+from solver.state import Floats, Grid, Particles
 
-#              x   F   r0  ox  oy 1/dx ny  x0  x1  y0  y1 table node
-FILL = flag(F1, F1, F1, f8, f8, f8, i8, f8, f8, f8, f8, F1, I1)
+#         x   F  domain ox  oy 1/dx nx  ny  x0  x1  y0  y1 table node
+FILL = flag(F1, F1, F1, f8, f8, f8, i8, i8, f8, f8, f8, f8, F1, I1)
 Fill = function_type(FILL)
+Place = Callable[[Floats], Floats]
 
 
-class Basis(Protocol):
-    """A basis is data plus one kernel; its file in solver/basis is its name."""
+class Basis:
+    """A basis is data plus one kernel; its file in solver/basis is its name. This one knows points alone."""
 
     support: ClassVar[int]  # K
     order: ClassVar[float]  # expected order of the displacement; source in the docstring
     fill: ClassVar[Callable[..., bool]]  # a kernel of signature FILL
+    width: ClassVar[int] = 0  # W
+    limit: ClassVar[str] = "the particle is outside the grid"  # what it means when the fill refuses the whole grid
+
+    @staticmethod
+    def domain(layout: Layout, place: Place) -> Floats:
+        """What the basis keeps of the domains, (P,W); `place` takes reference places (n,2) to those at the start."""
+        return np.zeros((len(layout), 0))
+
+    @classmethod
+    def populate(cls, layout: Layout, rho0: float, place: Place = lambda X: X) -> Particles:
+        """Particles at the places of the layout, and their domains where `place` takes them."""
+        return Particles(layout.X.copy(), rho0 * layout.V0, layout.V0.copy(), cls.domain(layout, place))
+
+    @staticmethod
+    def convect(particles: Particles, grid: Grid, dt: float) -> None:
+        """Move what follows the grid's velocity without F."""
 
 
 @kernel(inline=True)

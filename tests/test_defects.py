@@ -145,17 +145,17 @@ def one_wall_missing(m: Model, c: Comparison) -> None:
 
 
 def small_domains(m: Model, c: Comparison) -> None:
-    m.particles.r0 *= 0.8
+    m.particles.domain *= 0.8
 
 
 def domains(rule: Callable[[Floats], Floats]) -> Plant:
     """Domains from rule(F) r0 in place of F r0."""
 
     def plant(m: Model, c: Comparison) -> None:
-        start = m.particles.in_initial_order("r0")
+        start = m.particles.in_initial_order("domain").reshape(-1, 2, 2)
 
         def change(p: Particles, dt: float) -> None:
-            p.r0[:] = times(start[p.id], swap(times(inverse(p.F), rule(p.F))))
+            p.domain[:] = times(start[p.id], swap(times(inverse(p.F), rule(p.F)))).reshape(-1, 4)
 
         m.material = Law(m.material, after=change)
 
@@ -164,8 +164,8 @@ def domains(rule: Callable[[Floats], Floats]) -> Plant:
 
 def turned_side_vectors(m: Model, c: Comparison) -> None:
     """Placebo: the same parallelogram, its corners counted from the next one."""
-    r0 = m.particles.r0.copy()
-    m.particles.r0[:, 0], m.particles.r0[:, 1] = r0[:, 1], -r0[:, 0]
+    r0 = m.particles.domain.copy()
+    m.particles.domain[:, :2], m.particles.domain[:, 2:] = r0[:, 2:], -r0[:, :2]
 
 
 def stress_by_numpy(m: Model, c: Comparison) -> None:

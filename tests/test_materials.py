@@ -41,7 +41,7 @@ def cauchy(law: Any, F: Floats) -> Floats:
 def stress(law: Any, F: Floats) -> Floats:
     """What the solver computes for F (P,2,2)."""
     count = len(F)
-    p = Particles(np.zeros((count, 2)), np.ones(count), np.ones(count), np.zeros((count, 2, 2)))
+    p = Particles(np.zeros((count, 2)), np.ones(count), np.ones(count), np.zeros((count, 0)))
     p.F, p.sigma = np.ascontiguousarray(F), np.full((count, 4), np.nan)
     law.update(p, 1e-3)
     return p.sigma

@@ -25,7 +25,7 @@ def exact() -> Manufactured:
 def body(count: int, rng: np.random.Generator, unequal: bool = True) -> Particles:
     X = rng.random((count, 2))
     V0 = rng.uniform(0.2, 3.0, count) if unequal else np.full(count, 0.7)
-    return Particles(X, V0.copy(), V0, np.zeros((count, 2, 2)))
+    return Particles(X, V0.copy(), V0, np.zeros((count, 0)))
 
 
 def planted(exact: Manufactured, p: Particles, rng: np.random.Generator, norms: Norms) -> list[dict[str, Floats]]:

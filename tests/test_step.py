@@ -9,21 +9,25 @@ from cases.library import mms
 from cases.study import Run
 from solver._jit import BLOCK
 from solver.boundary import box
+from solver.layout import rectangle
 from solver.material.neo_hookean import NeoHookean
 from solver.plugins import available, load
-from solver.state import Grid, Particles, fill_rectangle
+from solver.state import Grid, Particles
 from solver.step import Model, RunFailed, Scheme, advance, check_time_step, grid_to_particles, particles_to_grid
 
 BASES = available("solver.basis")
 LAW = NeoHookean(E=1e3, nu=0.3, rho0=1.0)
 SOFT = NeoHookean(E=10.0, nu=0.3, rho0=1.0)  # round-off is not magnified by waves between nodes of hardly any mass
 DX, DT = 1 / 16, 1e-4
+# cells between a particle and the furthest node it gives to, and how far behind the wall a place can be on the grid
+REACH = {"mpm": 1.0, "gimp": 1.5, "cpgimp": 3.0, "cpdi": 1.25, "cpdi2": 1.25, "bspline2": 1.5, "bspline3": 2.0}
+EDGE = {"mpm": 2.0, "gimp": 1.5, "cpgimp": 0.25, "cpdi": 1.75, "cpdi2": 1.75, "bspline2": 0.5, "bspline3": 0.5}
 every_basis = pytest.mark.parametrize("name", BASES)
 
 
 def select(p: Particles, keep: Any) -> Particles:
     """A body of some of the particles."""
-    return Particles(p.X[keep], p.m[keep], p.V0[keep], p.r0[keep])
+    return Particles(p.X[keep], p.m[keep], p.V0[keep], p.domain[keep])
 
 
 def model(
@@ -31,10 +35,11 @@ def model(
 ) -> Model:
     """A body in the unit square: the places `keep(X)` chooses, the middle by default, three cells from the walls."""
     grid = Grid(DX, np.zeros(2), np.ones(2))
-    whole = fill_rectangle(grid, 4, LAW.rho0)
+    basis = load("solver.basis", name)()
+    whole = basis.populate(rectangle(grid.lower, grid.upper, DX, 4), LAW.rho0)
     chosen = keep(whole.X) if keep else (np.abs(whole.X - 0.5) < 5 * DX).all(axis=1)
     body = select(whole, chosen)
-    return Model(grid, body, load("solver.basis", name)(), law, box(grid, kind), dt, Scheme(flip))
+    return Model(grid, body, basis, law, box(grid, kind), dt, Scheme(flip))
 
 
 def go(m: Model, count: int, load: Any = None) -> None:
@@ -67,17 +72,24 @@ def test_free_fall(name: str, flip: float, g: tuple[float, float]) -> None:
 
     go(m, n, load_)
     step = m.dt**2 * n * (n + 1) / 2  # the sum of dt v over the steps: velocity first, then place
-    assert np.abs(p.v - (v0 + n * m.dt * np.array(g))).max() < 1e-11
+    assert np.abs(p.v - (v0 + n * m.dt * np.array(g))).max() < 1e-9
     assert np.abs(p.x - p.X - (n * m.dt * v0 + step * np.array(g))).max() < 1e-12
-    assert np.abs(p.F - np.eye(2)).max() < 1e-11
+    assert np.abs(p.F - np.eye(2)).max() < 1e-9  # round-off is magnified at nodes that a cubic spline hardly reaches
     assert np.abs(p.sigma).max() < 1e-11 * LAW.E
     assert m.time == n * m.dt
+
+
+def shift(p: Particles, by: Any, rows: Any = ...) -> None:
+    """Move particles, and corners of domains with them where those are places."""
+    p.x[rows] += by
+    if p.domain.shape[1] == 8:
+        p.domain[rows] += np.tile(by, 4)
 
 
 def stir(m: Model, seed: int = 1) -> None:
     """Random velocities, deformations and the stress that belongs to them."""
     rng, p = np.random.default_rng(seed), m.particles
-    p.x += 0.3 * DX * rng.uniform(-1, 1, p.x.shape)
+    shift(p, 0.3 * DX * rng.uniform(-1, 1, p.x.shape))
     p.v[:] = rng.standard_normal(p.v.shape)
     p.F += 0.1 * rng.standard_normal(p.F.shape)
     p.m *= rng.uniform(0.5, 2, len(p))
@@ -114,7 +126,7 @@ def test_grid_sums_against_plain_numpy(name: str) -> None:
     for q in range(len(p)):
         table, node = np.empty(3 * K * BLOCK), np.empty(K * BLOCK, np.int64)
         whole = (0.0, g.nx - 1.0, 0.0, g.ny - 1.0)
-        m.basis.fill(p.x[q], p.F[q].ravel(), p.r0[q].ravel(), *g.origin, 1 / g.dx, g.ny, *whole, table, node)
+        m.basis.fill(p.x[q], p.F[q].ravel(), p.domain[q], *g.origin, 1 / g.dx, g.nx, g.ny, *whole, table, node)
         N, gx, gy = table.reshape(3, K, BLOCK)[:, :, 0]
         i, (xx, yy, _, xy) = node.reshape(K, BLOCK)[:, 0], p.sigma[q]
         V = np.linalg.det(p.F[q]) * p.V0[q]
@@ -219,7 +231,7 @@ def test_walls_hold(name: str, kind: Any) -> None:
     m = model(name, lambda X: (X < 4 * DX).all(axis=1), kind)
     p = m.particles
     p.v[:] = (-1.0, -0.5)
-    p.F[:, 0, 0] = p.F[:, 1, 1] = 3.0  # for cpdi: corners of domains reach behind the walls
+    p.F[:, 0, 0] = p.F[:, 1, 1] = 3.0  # corners of domains that follow F reach behind the walls
     advance(m, lambda p, t: p.b.fill(-500.0))  # a wall takes the force too: FLIP must not hand it on
     g, held = m.grid, m.walls.held
     assert (g.velocity[held] == 0).all()
@@ -228,7 +240,7 @@ def test_walls_hold(name: str, kind: Any) -> None:
     free_ = ~held & (g.mass > 1e-9)[:, None]
     assert np.abs(g.velocity[free_]).min() > 0.1
     behind = (g.nodes < -0.5 * DX).any(axis=1)
-    assert (g.mass[behind].sum() > 0) == (name == "cpdi")
+    assert (g.mass[behind].sum() > 0) == (name in ("cpdi", "cpgimp"))
     if kind == "roller":
         wall = np.isclose(g.nodes[:, 0], 0) & (g.nodes[:, 1] > 0.5 * DX) & (g.mass > 1e-9)
         np.testing.assert_allclose(g.velocity[wall], np.tile([0, -0.5 - 500 * DT], (wall.sum(), 1)), atol=1e-9)
@@ -335,7 +347,7 @@ def test_leaving_the_grid(name: str) -> None:
         go(m, 100)
     failed = caught.value
     assert X[failed.particle, 0] == X[:, 0].max()  # the foremost column of the right body
-    beyond = 1 + 2 * DX - X[failed.particle, 0] - (0.25 * DX if name == "cpdi" else 0)
+    beyond = 1 + EDGE[name] * DX - X[failed.particle, 0]
     assert failed.step == m.steps == np.ceil(beyond / 0.02 - 1e-9)
     x = m.particles.x[row_of(m, failed.particle)]
     assert failed.cell == tuple(np.floor(x / DX).astype(int))
@@ -366,14 +378,17 @@ def test_nan_velocity(name: str) -> None:
     with pytest.raises(RunFailed, match="not finite") as caught:
         advance(m, still)
     assert caught.value.step == 3
-    assert np.abs(X[caught.value.particle] - X[start]).max() < 2.5 * DX  # a cell and a domain on either side
+    assert np.abs(X[caught.value.particle] - X[start]).max() < 2 * REACH[name] * DX
 
 
 @every_basis
 @pytest.mark.parametrize("array", ["x", "F", "sigma"])
 def test_nan_state(name: str, array: str) -> None:
     m, rows = two_bodies(name)
-    getattr(m.particles, array)[row_of(m, rows[3])].flat[0] = np.nan
+    row = row_of(m, rows[3])
+    getattr(m.particles, array)[row].flat[0] = np.nan
+    if array == "x":
+        shift(m.particles, [np.nan, 0.0], row)
     with pytest.raises(RunFailed):
         go(m, 2)
 
@@ -457,7 +472,7 @@ def nan_velocity(m: Model) -> None:
 
 
 def off_the_grid(m: Model) -> None:
-    m.particles.x[17] -= 10.0
+    shift(m.particles, [-10.0, -10.0], 17)
 
 
 @pytest.mark.parametrize(("plant", "reason"), [(nan_velocity, "not finite"), (off_the_grid, "outside the grid")])

@@ -19,8 +19,9 @@ from cases.store import Arrays
 from cases.study import QUANTITIES, Failure, Result, Run
 from mms.manufacture import Manufactured, manufacture
 from solver.boundary import box, moving
+from solver.layout import CENTRED
 from solver.plugins import MATERIALS, METHODS, SOLUTIONS, create, load
-from solver.state import Floats, Grid, Particles, fill_rectangle
+from solver.state import Floats, Grid, Particles
 from solver.step import Model, RunFailed, Scheme, advance, check_time_step
 
 
@@ -51,24 +52,31 @@ def setup(run: Run) -> tuple[Model, Comparison, int]:
     """
     solution: Any = create(SOLUTIONS, run.solution)
     material: Any = create(MATERIALS, run.material)
-    dx = float(solution.upper[0] - solution.lower[0]) / run.cells
+    dx = width(solution) / run.cells
     margin = dx * ceil(solution.margin / dx)
-    grid = Grid(dx, solution.lower - margin, solution.upper + margin)
-    particles = fill_rectangle(grid, run.ppc, material.rho0, solution.lower, solution.upper)
+    free = solution.boundary == "free"  # no wall ties the grid to the body: the offset moves the grid
+    shift = -dx * np.array(run.offset) if free else np.zeros(2)
+    grid = Grid(dx, solution.lower - margin + shift, solution.upper + margin + shift)
     steps = ceil(solution.duration / (run.courant * grid.dx / solution.C) * (1 - 1e-12))
     dt = solution.duration / steps
     behind = 0.5 * dt if run.staggered else 0.0
 
-    exact = manufactured(run.solution, run.material)
-    X = particles.X
+    exact, basis = manufactured(run.solution, run.material), load(METHODS, run.method)()
+    layout = solution.layout(dx, run.ppc, CENTRED if free else run.offset)
+    particles, X = basis.populate(layout, material.rho0, lambda places: exact.x(places, 0.0)), layout.X
     particles.x, particles.v = exact.x(X, 0.0), exact.v(X, -behind)
     particles.F, particles.sigma = exact.F(X, 0.0), exact.sigma(X, 0.0)
     particles.carried = exact.kernel.columns(X)
-    scheme, basis = Scheme(run.flip, run.staggered), load(METHODS, run.method)()
+    scheme = Scheme(run.flip, run.staggered)
     walls = moving(grid, solution.walls) if solution.boundary == "moving" else box(grid, solution.boundary)
     model = Model(grid, particles, basis, material, walls, dt, scheme)
     norms = Norms(len(particles), float(particles.V0.mean()))
     return model, Comparison(exact, norms, new_shares(particles), behind), steps
+
+
+def width(solution: Any) -> float:
+    """Extent along x, the one that cells are counted along."""
+    return float(solution.upper[0] - solution.lower[0])
 
 
 @cache
@@ -82,7 +90,7 @@ def execute(run: Run, tick: Callable[[float], None] = lambda share: None) -> tup
     """Run to the end, or to where it cannot go on: a failed run is a Result. `tick` hears the share that is done."""
     forget_peak()
     model, comparison, steps = setup(run)
-    failure, started = None, time.perf_counter()
+    failure, started, used = None, time.perf_counter(), time.process_time()
     try:
         if not run.force:
             check_time_step(model)
@@ -92,11 +100,11 @@ def execute(run: Run, tick: Callable[[float], None] = lambda share: None) -> tup
         comparison(model.particles, model.time)
     except RunFailed as reason:
         failure = Failure(reason.reason, reason.step, reason.particle, reason.cell)
-    wall = time.perf_counter() - started
+    wall, cpu = time.perf_counter() - started, time.process_time() - used
     errors, scale = comparison.norms.errors(), magnitude(comparison.exact, model.particles.X, steps * model.dt)
     if not failure and not np.isfinite([list(norms.values()) for norms in errors.values()]).all():
         failure = Failure("an error that is not finite", model.steps)
-    arrays = snapshot(model, comparison)
+    arrays = snapshot(run, model, comparison)
     result = Result(
         run=run,
         digest=run.digest,
@@ -106,6 +114,8 @@ def execute(run: Run, tick: Callable[[float], None] = lambda share: None) -> tup
         particles=len(model.particles),
         dt=model.dt,
         wall_s=wall,
+        cpu_s=cpu,
+        crossings=model.crossings,
         peak_memory_mb=peak_memory(),
         scale=scale,
         floor={} if failure else round_off(scale, model),
@@ -138,10 +148,12 @@ def round_off(scale: dict[str, float], model: Model) -> dict[str, float]:
     return {quantity: float(walk * size[quantity]) for quantity in QUANTITIES}
 
 
-def snapshot(model: Model, comparison: Comparison) -> Arrays:
+def snapshot(run: Run, model: Model, comparison: Comparison) -> Arrays:
     """The particles at the last step in the initial order, float32, for figures."""
+    solution: Any = create(SOLUTIONS, run.solution)
     p = model.particles
-    arrays = {name: p.in_initial_order(name) for name in ("X", "x", "F", "r0")}
+    arrays = {name: p.in_initial_order(name) for name in ("X", "x", "F")}
+    arrays["r0"] = solution.layout(width(solution) / run.cells, run.ppc, run.offset).r0
     error = arrays["x"] - comparison.exact.x(arrays["X"], model.time)
     return {name: a.astype(np.float32) for name, a in {**arrays, "error_u": np.hypot(*error.T)}.items()}
 

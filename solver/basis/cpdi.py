@@ -10,11 +10,13 @@ edge integrals of the interpolation, divided by the area.
 from typing import ClassVar
 
 from solver._jit import kernel
-from solver.weights import FILL, bilinear, outside
+from solver.layout import Layout
+from solver.state import Floats
+from solver.weights import FILL, Basis, Place, bilinear, outside
 
 
 @kernel(FILL)
-def fill(x, F, r0, ox, oy, inv_dx, ny, x0, x1, y0, y1, table, node):
+def fill(x, F, r0, ox, oy, inv_dx, nx, ny, x0, x1, y0, y1, table, node):
     """N and dN of the four nodes around each corner, sixteen in all, some of them the same; see solver/weights.py."""
     bad = 0
     for b in range(x.shape[0] // 2):
@@ -43,9 +45,16 @@ def fill(x, F, r0, ox, oy, inv_dx, ny, x0, x1, y0, y1, table, node):
     return bad == 0
 
 
-class Cpdi:
+class Cpdi(Basis):
     """Sixteen neighbours, order 2."""
 
     support: ClassVar[int] = 16
     order: ClassVar[float] = 2.0
     fill = staticmethod(fill)
+    width: ClassVar[int] = 4
+    limit: ClassVar[str] = "a corner of the particle's domain is outside the grid"
+
+    @staticmethod
+    def domain(layout: Layout, place: Place) -> Floats:
+        """Initial half side vectors r0; F moves them."""
+        return layout.r0.reshape(-1, 4).copy()

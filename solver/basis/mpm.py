@@ -9,13 +9,13 @@ from typing import ClassVar
 import numpy as np
 
 from solver._jit import BLOCK, kernel
-from solver.weights import FILL, outside
+from solver.weights import FILL, Basis, outside
 
 B = BLOCK
 
 
 @kernel(FILL)
-def fill(x, F, r0, ox, oy, inv_dx, ny, x0, x1, y0, y1, table, node):
+def fill(x, F, domain, ox, oy, inv_dx, nx, ny, x0, x1, y0, y1, table, node):
     """N and dN of the four nodes of the cell that holds the particle; see solver/weights.py."""
     bad = 0
     for b in range(x.shape[0] // 2):
@@ -48,7 +48,7 @@ def fill(x, F, r0, ox, oy, inv_dx, ny, x0, x1, y0, y1, table, node):
     return bad == 0
 
 
-class Mpm:
+class Mpm(Basis):
     """Four neighbours, order 2 before the first cell crossing."""
 
     support: ClassVar[int] = 4

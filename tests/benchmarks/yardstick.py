@@ -107,11 +107,11 @@ def grid(mass, given, motion, held, dt, cutoff):
             motion[i, 2 + a] = 0.0 if held[i, a] else inverse * given[i, 2 + a]
 
 
-SIGNATURE = nothing(F2, F2, F3, F2, F1, F1, F2, F3, F1, f8, i8, F1, F2, F2, F2, f8, f8, f8, f8)
+SIGNATURE = nothing(F2, F2, F3, F2, F1, F1, F2, F2, F1, f8, i8, F1, F2, F2, F2, f8, f8, f8, f8)
 
 
 @kernel(SIGNATURE)
-def cpdi(x, v, F, sigma, m, V0, b, r0, origin, inv_dx, ny, mass, given, motion, held, dt, cutoff, lam, mu):
+def cpdi(x, v, F, sigma, m, V0, b, domain, origin, inv_dx, ny, mass, given, motion, held, dt, cutoff, lam, mu):
     """One step of CPDI."""
     mass[:] = 0.0
     given[:] = 0.0
@@ -119,10 +119,10 @@ def cpdi(x, v, F, sigma, m, V0, b, r0, origin, inv_dx, ny, mass, given, motion, 
         if back:
             grid(mass, given, motion, held, dt, cutoff)
         for p in range(np.uint64(x.shape[0])):
-            r1x = F[p, 0, 0] * r0[p, 0, 0] + F[p, 0, 1] * r0[p, 0, 1]
-            r1y = F[p, 1, 0] * r0[p, 0, 0] + F[p, 1, 1] * r0[p, 0, 1]
-            r2x = F[p, 0, 0] * r0[p, 1, 0] + F[p, 0, 1] * r0[p, 1, 1]
-            r2y = F[p, 1, 0] * r0[p, 1, 0] + F[p, 1, 1] * r0[p, 1, 1]
+            r1x = F[p, 0, 0] * domain[p, 0] + F[p, 0, 1] * domain[p, 1]
+            r1y = F[p, 1, 0] * domain[p, 0] + F[p, 1, 1] * domain[p, 1]
+            r2x = F[p, 0, 0] * domain[p, 2] + F[p, 0, 1] * domain[p, 3]
+            r2y = F[p, 1, 0] * domain[p, 2] + F[p, 1, 1] * domain[p, 3]
             per_area = 0.25 / (r1x * r2y - r1y * r2x)
             gx1 = (r1y - r2y) * per_area
             gy1 = (r2x - r1x) * per_area
@@ -158,7 +158,7 @@ def cpdi(x, v, F, sigma, m, V0, b, r0, origin, inv_dx, ny, mass, given, motion, 
 
 
 @kernel(SIGNATURE)
-def mpm(x, v, F, sigma, m, V0, b, r0, origin, inv_dx, ny, mass, given, motion, held, dt, cutoff, lam, mu):
+def mpm(x, v, F, sigma, m, V0, b, domain, origin, inv_dx, ny, mass, given, motion, held, dt, cutoff, lam, mu):
     """One step of MPM."""
     mass[:] = 0.0
     given[:] = 0.0

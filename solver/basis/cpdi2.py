@@ -1,0 +1,96 @@
+"""CPDI2: hat functions averaged over a quadrilateral whose corners move with the grid's velocity.
+
+The field is interpolated bilinearly from the corners, so neighbours share them and leave no gaps, rotation and bending
+included. N and dN are the exact means of that interpolation and of its gradient over the quadrilateral; a particle's
+weights reproduce its centroid. Source: Sadeghirad, Brannon & Guilkey 2013. Order 2, large deformation included.
+"""
+
+from typing import ClassVar
+
+import numpy as np
+from numba import prange
+
+from solver._jit import BLOCK, F1, F2, f8, i8, kernel, nothing
+from solver.layout import Layout
+from solver.state import Floats, Grid, Particles
+from solver.weights import FILL, Basis, Place, bilinear, outside
+
+
+@kernel(FILL)
+def fill(x, F, corner, ox, oy, inv_dx, nx, ny, x0, x1, y0, y1, table, node):
+    """N and dN of the four nodes around each corner, sixteen in all, some of them the same; see solver/weights.py."""
+    bad = 0
+    for b in range(x.shape[0] // 2):
+        ax = (corner[8 * b] - ox) * inv_dx
+        ay = (corner[8 * b + 1] - oy) * inv_dx
+        bx = (corner[8 * b + 2] - ox) * inv_dx
+        by = (corner[8 * b + 3] - oy) * inv_dx
+        cx = (corner[8 * b + 4] - ox) * inv_dx
+        cy = (corner[8 * b + 5] - oy) * inv_dx
+        dx = (corner[8 * b + 6] - ox) * inv_dx
+        dy = (corner[8 * b + 7] - oy) * inv_dx
+        V = 0.5 * ((cx - ax) * (dy - by) - (dx - bx) * (cy - ay))  # from the diagonals
+        p = (dx - ax) * (by - cy) - (bx - cx) * (dy - ay)
+        q = (cx - dx) * (ay - by) - (ax - bx) * (cy - dy)
+        left = min(min(ax, bx), min(cx, dx))
+        right = max(max(ax, bx), max(cx, dx))
+        below = min(min(ay, by), min(cy, dy))
+        above = max(max(ay, by), max(cy, dy))
+        bad += outside(x0, x1, y0, y1, left, right, below, above) + int(not (V > 0.0))
+        per_24 = 1.0 / (24.0 * V)
+        per_2 = 12.0 * per_24 * inv_dx
+        px = (by - dy) * per_2  # gradient weight of the first corner, and with the other sign of the third
+        py = (dx - bx) * per_2
+        qx = (cy - ay) * per_2  # of the second, and of the fourth
+        qy = (ax - cx) * per_2
+        bilinear(0, 16, b, ax, ay, (6.0 * V - p - q) * per_24, px, py, ny, table, node)
+        bilinear(4, 16, b, bx, by, (6.0 * V - p + q) * per_24, qx, qy, ny, table, node)
+        bilinear(8, 16, b, cx, cy, (6.0 * V + p + q) * per_24, -px, -py, ny, table, node)
+        bilinear(12, 16, b, dx, dy, (6.0 * V + p - q) * per_24, -qx, -qy, ny, table, node)
+    return bad == 0
+
+
+@kernel(nothing(F1, f8, f8, f8, i8, F2, f8))
+def move(places, ox, oy, inv_dx, ny, motion, dt):
+    """x_c <- x_c + dt sum S_i(x_c) v_i for flat places."""
+    for c in range(places.shape[0] // 2):
+        x = (places[2 * c] - ox) * inv_dx
+        y = (places[2 * c + 1] - oy) * inv_dx
+        i = np.floor(x)
+        j = np.floor(y)
+        right = x - i
+        above = y - j
+        node = np.int64(i) * ny + np.int64(j)
+        for a in range(2):
+            low = (1.0 - above) * motion[node, a] + above * motion[node + 1, a]
+            high = (1.0 - above) * motion[node + ny, a] + above * motion[node + ny + 1, a]
+            places[2 * c + a] += dt * ((1.0 - right) * low + right * high)
+
+
+@kernel(nothing(F1, F1, f8, i8, F2, f8), parallel=True)
+def move_all(places, origin, inv_dx, ny, motion, dt):
+    """The same in blocks."""
+    for block in prange((places.shape[0] + 8 * BLOCK - 1) // (8 * BLOCK)):
+        lo = 8 * BLOCK * block
+        hi = min(lo + 8 * BLOCK, places.shape[0])
+        move(places[lo:hi], origin[0], origin[1], inv_dx, ny, motion, dt)
+
+
+class Cpdi2(Basis):
+    """Sixteen neighbours, order 2."""
+
+    support: ClassVar[int] = 16
+    order: ClassVar[float] = 2.0
+    fill = staticmethod(fill)
+    width: ClassVar[int] = 8
+    limit: ClassVar[str] = "a corner of the particle's domain is outside the grid, or the domain is turned inside out"
+
+    @staticmethod
+    def domain(layout: Layout, place: Place) -> Floats:
+        """Places of the four corners, counter-clockwise."""
+        return place(layout.corners.reshape(-1, 2)).reshape(-1, 8)
+
+    @staticmethod
+    def convect(particles: Particles, grid: Grid, dt: float) -> None:
+        """Corners are material points: they go with the velocity of the grid."""
+        move_all(particles.domain.ravel(), grid.origin, 1.0 / grid.dx, grid.ny, grid.motion, dt)

@@ -1,0 +1,65 @@
+"""cpGIMP: GIMP on rectangles that stretch with the diagonal of F, l = |F_xx| l0_x along x and |F_yy| l0_y along y.
+
+Contiguous particles where the body is stretched along the axes; shear and rotation are not followed, and at a quarter
+turn F_xx and F_yy vanish, and with them the domain. Source: Bardenhagen & Kober 2004; Wallstedt & Guilkey 2008.
+Half lengths of up to one cell.
+"""
+
+from typing import ClassVar
+
+import numpy as np
+
+from solver._jit import kernel
+from solver.basis._gimp import half_lengths, slope, value
+from solver.layout import Layout
+from solver.state import Floats
+from solver.tensor import four
+from solver.weights import FILL, Basis, Place, outside
+
+
+@kernel(FILL)
+def fill(x, F, l0, ox, oy, inv_dx, nx, ny, x0, x1, y0, y1, table, node):
+    """N and dN of the nodes that a domain of up to two cells can reach, sixteen in all; see solver/weights.py."""
+    bad = 0
+    for b in range(x.shape[0] // 2):
+        px = (x[2 * b] - ox) * inv_dx
+        py = (x[2 * b + 1] - oy) * inv_dx
+        lx = abs(F[4 * b]) * l0[2 * b] * inv_dx
+        ly = abs(F[4 * b + 3]) * l0[2 * b + 1] * inv_dx
+        i = np.floor(px - lx)
+        j = np.floor(py - ly)
+        bad += outside(x0, x1, y0, y1, i, i + 2.5, j, j + 2.5)
+        bad += int(not (max(lx, ly) <= 1.0)) + int(not (min(lx, ly) > 0.0))
+        sx = px - i
+        sy = py - j
+        first = np.int64(i) * ny + np.int64(j)
+        Y0 = value(sy, ly)
+        Y1 = value(sy - 1.0, ly)
+        Y2 = value(sy - 2.0, ly)
+        Y3 = value(sy - 3.0, ly)
+        D0 = slope(sy, ly) * inv_dx
+        D1 = slope(sy - 1.0, ly) * inv_dx
+        D2 = slope(sy - 2.0, ly) * inv_dx
+        D3 = slope(sy - 3.0, ly) * inv_dx
+        for a in range(4):
+            Nx = value(sx - a, lx)
+            Gx = slope(sx - a, lx) * inv_dx
+            four(4 * a, 16, b, first + a * ny, Nx, Gx, Y0, Y1, Y2, Y3, D0, D1, D2, D3, table, node)
+    return bad == 0
+
+
+class Cpgimp(Basis):
+    """Sixteen neighbours, order 2 while the body neither turns nor shears."""
+
+    support: ClassVar[int] = 16
+    order: ClassVar[float] = 2.0
+    fill = staticmethod(fill)
+    width: ClassVar[int] = 2
+    limit: ClassVar[str] = (
+        "a neighbour is outside the grid, or the particle's domain is wider than two cells or of no width"
+    )
+
+    @staticmethod
+    def domain(layout: Layout, place: Place) -> Floats:
+        """Half lengths along x and y, as at first."""
+        return half_lengths(layout)

@@ -1,0 +1,62 @@
+"""GIMP with domains of fixed size (uGIMP): hat functions averaged over a rectangle that does not deform.
+
+N = Nx Ny with N(s) = 1/(2 l) times the integral of the hat over (s - l, s + l), and the gradient is that of N. With
+half lengths l up to half a cell. Source: Bardenhagen & Kober 2004. Order 2 until particles cross cells; then domains
+that do not follow the deformation overlap or leave gaps, and the order falls (Wallstedt & Guilkey 2008).
+"""
+
+from typing import ClassVar
+
+import numpy as np
+
+from solver._jit import kernel
+from solver.basis._gimp import half_lengths, slope, value
+from solver.layout import Layout
+from solver.state import Floats
+from solver.tensor import three
+from solver.weights import FILL, Basis, Place, outside
+
+LARGEST = 0.5 + 1e-9  # half length, in cells: beyond, a domain reaches a fourth node
+
+
+@kernel(FILL)
+def fill(x, F, l0, ox, oy, inv_dx, nx, ny, x0, x1, y0, y1, table, node):
+    """N and dN of the nearest node and of those around it, nine in all; see solver/weights.py."""
+    bad = 0
+    for b in range(x.shape[0] // 2):
+        px = (x[2 * b] - ox) * inv_dx
+        py = (x[2 * b + 1] - oy) * inv_dx
+        lx = l0[2 * b] * inv_dx
+        ly = l0[2 * b + 1] * inv_dx
+        i = np.floor(px + 0.5)
+        j = np.floor(py + 0.5)
+        bad += outside(x0, x1, y0, y1, i - 1.0, i + 0.5, j - 1.0, j + 0.5)
+        bad += int(not (max(lx, ly) < LARGEST))
+        sx = px - i
+        sy = py - j
+        first = (np.int64(i) - 1) * ny + np.int64(j) - 1
+        Y0 = value(sy + 1.0, ly)
+        Y1 = value(sy, ly)
+        Y2 = value(sy - 1.0, ly)
+        D0 = slope(sy + 1.0, ly) * inv_dx
+        D1 = slope(sy, ly) * inv_dx
+        D2 = slope(sy - 1.0, ly) * inv_dx
+        for a in range(3):
+            s = sx + 1.0 - a
+            three(3 * a, 9, b, first + a * ny, value(s, lx), slope(s, lx) * inv_dx, Y0, Y1, Y2, D0, D1, D2, table, node)
+    return bad == 0
+
+
+class Gimp(Basis):
+    """Nine neighbours, order 2 before the first cell crossing."""
+
+    support: ClassVar[int] = 9
+    order: ClassVar[float] = 2.0
+    fill = staticmethod(fill)
+    width: ClassVar[int] = 2
+    limit: ClassVar[str] = "a neighbour is outside the grid, or the particle's domain is wider than a cell"
+
+    @staticmethod
+    def domain(layout: Layout, place: Place) -> Floats:
+        """Half lengths along x and y, as at first."""
+        return half_lengths(layout)
