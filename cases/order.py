@@ -25,6 +25,7 @@ NO_PASS, DEFECT = 0.10, 0.50  # shares of the finest error that are not of the e
 ONE_SIGMA = 0.84  # NO_PASS must hold with a standard error to spare: the best fit alone passes 8 % of 14 % floors
 MAGNITUDE = 0.10  # relative distance from the recorded error
 GROWTH = 2.0  # a flat sequence with 15 % scatter grows by 1.5 from its best level in 9 % of draws, by 2 in 0.2 %
+DROP = 0.3  # in the local order, of a stall: a fall that no scatter of a converging family shows
 CONVERGES = 0.5  # a smaller order is nearly a stall: no surprise where non-convergence is expected
 
 
@@ -105,7 +106,9 @@ def _judge(q: Quantity, confidence: float) -> Verdict:
     order, fit, slope, shares = q.expectation.order, q.fit, q.fit.slope, None
     if order is not None and slope:
         shares = contamination(fit.h[fit.judged], fit.error[fit.judged], order, ONE_SIGMA, fit.noise)
-    if not len(fit.h):
+    if order is None and q.ordered and all(q.expectation.lost in level.failed for level in q.ordered):
+        outcome, reason = _non_convergence(q, confidence)
+    elif not len(fit.h):
         ends = "; ".join(f"h={_inverse(level.h)}: {level.ended}" for level in q.ordered)
         outcome, reason = Outcome.ERROR, f"no level finished ({ends or 'there is none'})"
     elif order is None:
@@ -188,21 +191,34 @@ def _magnitude(q: Quantity) -> Finding:
 
 
 def _non_convergence(q: Quantity, confidence: float) -> Finding:
-    """Met if the error grows clearly from its smallest value on, or if runs finer than a finished one lost det F."""
-    h, error, slope = q.fit.h, q.fit.error, q.fit.slope
+    """Met if the error grows clearly from its smallest value on, or runs finer than a finished one are lost, or all.
+
+    Where a stall is expected, an order that has fallen below it meets it too.
+    """
+    e, lost = q.expectation, [level for level in q.ordered if q.expectation.lost in level.failed]
+    if not len(q.fit.h):  # every level was lost
+        last = f"the last at h={_inverse(lost[-1].h)} with {lost[-1].failed}"
+        return PASS, f"does not converge, as expected: all {len(lost)} runs ended, {last}"
+    h, error, slope, orders = q.fit.h, q.fit.error, q.fit.slope, q.fit.orders
     best, seen = int(np.argmin(error)), []
-    lost = [level for level in q.ordered if "det F" in level.failed and level.h < h[0]]
+    finer = [level for level in lost if level.h < h[0]]
     if error[-1] >= GROWTH * error[best] > 0 and np.polyfit(np.log(h[best:]), np.log(error[best:]), 1)[0] < 0:
         seen.append(f"the error grew {_path(q.fit, best)}")
-    if lost:
-        more = f" and {len(lost) - 1} finer as well" if lost[1:] else ""
-        seen.append(f"the run at h={_inverse(lost[0].h)} ended with {lost[0].failed}{more}")
+    if finer:
+        more = f" and {len(finer) - 1} finer as well" if finer[1:] else ""
+        seen.append(f"the run at h={_inverse(finer[0].h)} ended with {finer[0].failed}{more}")
+    if e.stall is not None and len(h) >= LEVELS and orders[-1] < e.stall and orders.max() - orders[-1] > DROP:
+        seen.append(f"the order fell from {orders.max():.2f} to {orders[-1]:.2f} at h={_inverse(h[-1])}")
     if seen:
-        return PASS, f"does not converge, as expected: {', and '.join(seen)}"
-    if len(h) >= LEVELS and slope and min(slope.interval(confidence)[0], *q.fit.orders) > CONVERGES:
+        return PASS, f"{'stalls' if e.stall is not None else 'does not converge'}, as expected: {', and '.join(seen)}"
+    least = CONVERGES if e.stall is None else e.stall
+    if len(h) >= LEVELS and slope and min(slope.interval(confidence)[0], *orders) > least:
         return FAIL, f"a surprise: not expected to converge, the error fell {_path(q.fit)}, order {slope.value:.2f}"
     went = f"the error went {_path(q.fit)}" if h[1:].size else f"one level finished, h={_inverse(h[0])}"
-    return INCONCLUSIVE, f"neither growth nor convergence: {went}: {q.finer}"
+    wanted = (
+        "neither growth nor convergence" if e.stall is None else f"neither a stall below {e.stall:g} nor convergence"
+    )
+    return INCONCLUSIVE, f"{wanted}: {went}: {q.finer}"
 
 
 def _path(fit: Fit, start: int = 0) -> str:

@@ -21,8 +21,9 @@ class Outcome(StrEnum):
 class Expectation:
     """Registered before the run: the band [order - below, order + above], its source, and the recorded error.
 
-    `constant` is the error once recorded at cell size `constant_h`. An order of None expects non-convergence.
-    Raises ValueError if only one of the two is given, or if the band has no width.
+    `constant` is the error once recorded at cell size `constant_h`. An order of None expects non-convergence: growth of
+    the error, runs that end with `lost` in their reason, or, if `stall` is given, a local order that falls below it.
+    Raises ValueError if only one of the two is given, if the band has no width, or for a stall beside an order.
     """
 
     order: float | None
@@ -31,12 +32,21 @@ class Expectation:
     source: str = ""
     constant: float | None = None
     constant_h: float | None = None
+    stall: float | None = None
+    lost: str = "det F"
 
     def __post_init__(self) -> None:
         if (self.constant is None) != (self.constant_h is None):
             raise ValueError("constant and constant_h belong together")
         if self.below <= 0 or self.above <= 0:
             raise ValueError(f"a band needs width on both sides, not {self.below} and {self.above}")
+        if self.stall is not None and self.order is not None:
+            raise ValueError(f"expected is either the order {self.order} or a stall below {self.stall}, not both")
+
+    @property
+    def kind(self) -> str:
+        """`order 2`, `diverges` or `stalls`."""
+        return f"order {self.order:g}" if self.order is not None else "diverges" if self.stall is None else "stalls"
 
 
 @dataclass(frozen=True)

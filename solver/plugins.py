@@ -1,6 +1,12 @@
-"""A plug-in is a file: its name is the word on the command line, and the class in it has that name in CamelCase."""
+"""A plug-in is a file: its name is the word on the command line, and the class in it has that name in CamelCase.
 
+A package with a module `_own` takes the path of a user's file too: `_own.load(path)` makes a class of it.
+"""
+
+import hashlib
+import re
 from dataclasses import fields
+from functools import cache
 from importlib import import_module
 from math import isfinite
 from pathlib import Path
@@ -9,7 +15,8 @@ from typing import Any
 from solver.sources import TOP
 
 METHODS, MATERIALS, SOLUTIONS, CASES = "solver.basis", "solver.material", "mms.solutions", "cases.library"
-KINDS = {METHODS: "method", MATERIALS: "material", SOLUTIONS: "solution", CASES: "case"}
+TRANSFERS = "solver.transfers"
+KINDS = {METHODS: "method", MATERIALS: "material", SOLUTIONS: "solution", CASES: "case", TRANSFERS: "transfer"}
 
 
 def available(package: str) -> list[str]:
@@ -23,10 +30,59 @@ def folder(package: str) -> Path:
 
 
 def load(package: str, name: str) -> Any:
-    """The class of plug-in `name`. Raises ValueError that lists the choices where there is no such file."""
+    """The class of plug-in `name`, or of a user's file. Raises ValueError that lists the choices if there is none."""
+    own = (folder(package) / "_own.py").exists()
+    if own and is_file(name):
+        return import_module(f"{package}._own").load(Path(name))
     if name not in available(package):
-        raise ValueError(f"no {KINDS.get(package, 'plug-in')} {name!r}; choose from {', '.join(available(package))}")
+        choices = ", ".join(available(package)) + (", or give a file: path/to/own.py" if own else "")
+        raise ValueError(f"no {KINDS.get(package, 'plug-in')} {name!r}; choose from {choices}")
     return getattr(import_module(f"{package}.{name}"), camel(name))
+
+
+def is_file(specification: str) -> bool:
+    """Whether this names a user's file: its name ends in .py."""
+    return split(specification)[0].endswith(".py")
+
+
+def split(specification: str) -> tuple[str, str]:
+    """Name and parameters of `name:key=value`; a path may have colons of its own."""
+    path = re.fullmatch(r"(.+\.py)(?::([^/\\]*))?", specification)
+    if path:
+        return path[1], path[2] or ""
+    name, _, rest = specification.partition(":")
+    return name, rest
+
+
+def absolute(specification: str) -> str:
+    """The specification with a user's file by its whole path, so that it means the same in another folder."""
+    name, rest = split(specification)
+    return ":".join(filter(None, [str(Path(name).resolve()), rest])) if is_file(name) else specification
+
+
+@cache
+def source(path: Path) -> str:
+    """Text of a user's file, read once a process: what is hashed is what is run. Raises ValueError."""
+    try:
+        return path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise ValueError(f"{path}: {(error.strerror or str(error)).lower()}") from None
+    except UnicodeDecodeError:
+        raise ValueError(f"{path} is no text") from None
+
+
+def identity(specification: str) -> str:
+    """What a specification stands for: a user's file by its content, wherever it is; anything else by its words.
+
+    A file that cannot be read any more has an identity that no other has.
+    """
+    name, rest = split(specification)
+    if not is_file(name):
+        return specification
+    try:
+        return f"{hashlib.sha256(source(Path(name)).encode()).hexdigest()}:{rest}"
+    except ValueError:
+        return f"unreadable {specification}"
 
 
 def camel(name: str) -> str:
@@ -39,7 +95,7 @@ def create(package: str, specification: str) -> Any:
 
     Raises ValueError with one line that says what is allowed.
     """
-    name, _, rest = specification.partition(":")
+    name, rest = split(specification)
     plugin = load(package, name)
     allowed = [item.name for item in fields(plugin)]
     parameters: dict[str, float] = {}

@@ -374,9 +374,52 @@ def test_only_det_f_on_a_finer_level_counts_as_divergence() -> None:
 
 @pytest.mark.parametrize("expectation", [SECOND, DIVERGES])
 def test_nothing_finished_is_an_error(expectation: Expectation) -> None:
-    got = verdict([], expectation, [DET] * 4)
-    assert (got.outcome, got.observed, DET in got.reason) == (ERROR, None, True)
+    got = verdict([], expectation, ["out of memory"] * 4)
+    assert (got.outcome, got.observed, "out of memory" in got.reason) == (ERROR, None, True)
+    assert verdict([], SECOND, [DET] * 4).outcome is ERROR
     assert judge([], expectation, floor=0.0, dt_halved=None).outcome is ERROR
+
+
+def test_all_runs_lost_is_non_convergence() -> None:
+    """By the registered reason alone, and every one of them."""
+    got = verdict([], DIVERGES, [DET] * 4)
+    assert (got.outcome, "all 4 runs ended" in got.reason) == (PASS, True)
+    assert verdict([], DIVERGES, [DET] * 3 + ["out of memory"]).outcome is ERROR
+    narrow = Expectation(None, lost="no width")
+    assert verdict([], narrow, [DET] * 4).outcome is ERROR
+    assert verdict([], narrow, ["a domain of no width"] * 4).outcome is PASS
+
+
+GIMP_4 = (5.109e-3, 1.881e-3, 8.807e-4, 5.360e-4)  # measured: 1.44 1.09 0.72
+STALLS = Expectation(None, stall=1.5, source="measured")
+
+
+def test_a_stall_is_recognised() -> None:
+    got = verdict(GIMP_4, STALLS)
+    assert (got.outcome, "fell from 1.44 to 0.72" in got.reason) == (PASS, True)
+    assert verdict([*GIMP_4[:3], 3e-3], STALLS).outcome is PASS  # growth is worse than a stall
+    assert verdict(CPDI_4, STALLS).outcome is FAIL  # a surprise
+    assert verdict(GIMP_4, DIVERGES).outcome is not PASS  # a stall is no divergence
+    assert verdict(GIMP_4, SECOND).outcome is not PASS
+    assert verdict(GIMP_4[:3], STALLS).outcome is INCONCLUSIVE  # too few to say so
+
+
+@pytest.mark.parametrize("scatter", [0.0, 0.03])
+def test_a_stall_is_neither_invented_nor_overlooked(scatter: float) -> None:
+    """Of clean order 2 none passes as a stall, and with a floor of eight times the finest clean error nearly all do."""
+    rng, outcomes = np.random.default_rng(21), {name: Counter[Outcome]() for name in ("clean", "stalls")}
+    for _ in range(DRAWS):
+        noise, h = np.exp(scatter * rng.standard_normal(5)), cells(5)
+        outcomes["clean"][verdict((h**2 * noise).tolist(), STALLS).outcome] += 1
+        outcomes["stalls"][verdict(((h**2 + 8 * h[-1] ** 2) * noise).tolist(), STALLS).outcome] += 1
+    assert outcomes["clean"][PASS] == 0
+    assert outcomes["clean"][FAIL] >= 0.9 * DRAWS
+    assert outcomes["stalls"][PASS] >= 0.95 * DRAWS
+
+
+def test_a_stall_beside_an_order_is_refused() -> None:
+    with pytest.raises(ValueError, match="not both"):
+        Expectation(2.0, stall=1.5)
 
 
 # --- several quantities ----------------------------------------------------------------------------------------------

@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from verify.audit import audit
 from verify.list import list_plugins
 from verify.mms import mms
 from verify.report import report
@@ -16,6 +17,7 @@ USAGE, STOPPED = 2, 130
 
 app = typer.Typer(name="verify", rich_markup_mode=None, pretty_exceptions_enable=False)
 app.command("mms")(mms)
+app.command("audit")(audit)
 app.command("list")(list_plugins)
 app.command("report")(report)
 

@@ -1,0 +1,55 @@
+"""What the solutions on a ring around the origin have in common: the body, the reference speed and the clearance."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from solver.layout import CENTRED, Layout, Offset, annulus
+from solver.state import Floats
+
+
+@dataclass(frozen=True)
+class Annulus:
+    """0 < inner < outer: radii of the body; C above zero: reference speed, dt = courant dx / C (ValueError otherwise).
+
+    Both edges are free: no wall, and a displacement of a subclass must leave them without traction.
+    """
+
+    inner: float = 0.75
+    outer: float = 1.25
+    C: float = 1.0
+    boundary: ClassVar[str] = "free"
+
+    def __post_init__(self) -> None:
+        if not 0 < self.inner < self.outer:
+            raise ValueError(f"inner = {self.inner} and outer = {self.outer} must be 0 < inner < outer")
+        if not self.C > 0:
+            raise ValueError(f"C = {self.C} must be above zero")
+
+    @property
+    def L(self) -> float:
+        """Thickness, the length on which the fields vary."""
+        return self.outer - self.inner
+
+    @property
+    def lower(self) -> Floats:
+        """Lower corner of the box around the body, (2,)."""
+        return np.full(2, -self.outer)
+
+    @property
+    def upper(self) -> Floats:
+        """Upper corner of the box around the body, (2,)."""
+        return np.full(2, self.outer)
+
+    @property
+    def margin(self) -> float:
+        """How much wider than the box the grid is: two cells where eight lie across the body.
+
+        Domains beside a free edge are parallelograms, and in strong shear their corners reach beyond the edge.
+        """
+        return 0.5 * self.outer
+
+    def layout(self, dx: float, ppc: int, offset: Offset = CENTRED) -> Layout:
+        """Rings of domains, spaced as `ppc` in a cell of side dx; the same for every `offset`, which moves the grid."""
+        return annulus(self.inner, self.outer, dx, ppc)

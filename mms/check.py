@@ -1,0 +1,124 @@
+"""Whether a user's solution is one: smooth, finite, F invertible everywhere and always, a boundary the solver has."""
+
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import sympy as sp
+
+from mms.edges import examine
+from mms.manufacture import manufacture
+from mms.measure import Law, Sampler, filled, largest
+from solver.state import Floats
+
+PLACES, TIMES = 33, 33  # along a side and over the duration, for what has to be finite
+FINE = (49, 97, 97)  # times and places that look for the least det F
+STARTS = 24  # of the search from there
+LEAST_DET = 1e-6
+MOST = 64  # largest whole number in the ratio of the sides
+
+SMOOTH = (sp.sin, sp.cos, sp.tan, sp.asin, sp.acos, sp.atan, sp.sinh, sp.cosh, sp.tanh, sp.exp, sp.log)
+NODES = (sp.Symbol, sp.Number, sp.NumberSymbol, sp.Add, sp.Mul, sp.Pow, *SMOOTH)
+
+
+def check(solution: Any, law: Law, cells: tuple[int, ...] = ()) -> None:
+    """Raise ValueError with one line that says what is wrong, and where and when.
+
+    Sampled, then sought from the samples: what happens within less than a hundredth of the body can be missed.
+    """
+    name = str(getattr(solution, "path", type(solution).__name__))
+    cells_fit(name, solution, cells)
+    smooth(name, solution)
+    exact = manufacture(solution, law, law.rho0)  # type: ignore[arg-type]
+    sampler = Sampler(exact)
+    times = np.linspace(0.0, solution.duration, TIMES)
+    X = lattice(solution, PLACES)
+    s = sampler(X, times)
+    for quantity, values in (("u", s.u), ("v", s.v), ("F", s.F), ("the acceleration", s.acceleration)):
+        finite(name, quantity, values, X, times)
+    if largest(s.u) == 0:
+        raise ValueError(f"{name}: nothing moves, u = 0 everywhere")
+    invertible(name, solution, sampler)
+    for quantity, values in (("the stress", s.sigma), ("the body force", s.b)):
+        finite(name, quantity, values, X, times)
+    wrong = examine(solution, exact, law).wrong(solution.sides)
+    if wrong:
+        raise ValueError(f"{name}: {wrong}")
+
+
+def cells_fit(name: str, solution: Any, cells: tuple[int, ...]) -> None:
+    """Square cells, counted along x, must fill the rectangle."""
+    width, height = (float(side) for side in solution.upper - solution.lower)
+    ratio = Fraction(height / width).limit_denominator(MOST)
+    if abs(ratio - height / width) > 1e-9 * height / width:
+        raise ValueError(f"{name}: no square cells fill a rectangle of {width:g} x {height:g}; take a simpler ratio")
+    for count in cells:
+        if (count * ratio).denominator != 1:
+            raise ValueError(
+                f"{name}: {count} cells over the width of {width:g} do not fill the height of {height:g}; "
+                f"take multiples of {ratio.denominator}"
+            )
+
+
+def smooth(name: str, solution: Any) -> None:
+    """Only functions that have all derivatives, and that the compiled kernel knows."""
+    u = solution.displacement(sp.symbols("X Y", real=True), sp.Symbol("t", real=True))
+    for component, node in ((c, node) for c in u for node in sp.preorder_traversal(c)):
+        if component.has(sp.nan, sp.zoo, sp.oo, sp.I) or not isinstance(node, NODES):
+            allowed = ", ".join(f.__name__ for f in SMOOTH)
+            raise ValueError(f"{name}: displacement has {str(node)[:60]}; use numbers, powers, sqrt and {allowed}")
+
+
+def lattice(solution: Any, count: int) -> Floats:
+    """Places (count^2, 2) in rows, the edges included."""
+    axes = [np.linspace(solution.lower[a], solution.upper[a], count) for a in (0, 1)]
+    return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
+
+
+def finite(name: str, quantity: str, values: Floats, X: Floats, times: Floats) -> None:
+    """Raise ValueError with the first time and a place where `values` (T,P,...) have none."""
+    bad = ~np.isfinite(values.reshape(len(times), len(X), -1)).all(axis=-1)
+    if bad.any():
+        k, p = np.argwhere(bad)[0]
+        raise ValueError(f"{name}: {quantity} is not finite at {where(X[p], times[k])}")
+
+
+def where(X: Floats, t: float) -> str:
+    """A place and a time in words."""
+    return f"(X, Y) = ({X[0]:.6g}, {X[1]:.6g}), t = {t:.6g}"
+
+
+def invertible(name: str, solution: Any, sampler: Sampler) -> None:
+    """Raise ValueError where det F, at its least, is not above zero."""
+    place, J = least_det(solution, sampler)
+    if not J > LEAST_DET:
+        raise ValueError(f"{name}: F is not invertible: det F = {J:.3g} at {where(place[1:], place[0])}")
+
+
+def least_det(solution: Any, sampler: Sampler) -> tuple[Floats, float]:
+    """(t, X, Y) and det F where it is least: the lowest of the sampled minima, each followed down to its bottom."""
+    from scipy.ndimage import minimum_filter
+    from scipy.optimize import minimize
+
+    low = np.array([0.0, *solution.lower])
+    high = np.array([solution.duration, *solution.upper])
+    axes = [np.linspace(0.0, 1.0, count) for count in FINE]
+    J = determinant(sampler, low, high, *np.meshgrid(*axes, indexing="ij", sparse=True))
+    bottoms = np.argwhere(minimum_filter(J, size=3) == J)
+    lowest = bottoms[np.argsort(J[tuple(bottoms.T)], kind="stable")[:STARTS]]
+    best, least = lowest[0] / (np.array(FINE) - 1), float(J[tuple(lowest[0])])
+    for start in lowest / (np.array(FINE) - 1):
+        found = minimize(
+            lambda at: float(determinant(sampler, low, high, *at)), start, bounds=[(0, 1)] * 3, method="L-BFGS-B"
+        )
+        if found.fun < least:
+            best, least = found.x, float(found.fun)
+    return low + best * (high - low), least
+
+
+def determinant(sampler: Sampler, low: Floats, high: Floats, *at: Any) -> Floats:
+    """det F at shares `at` of the duration, the width and the height."""
+    t, X, Y = (low[a] + at[a] * (high[a] - low[a]) for a in range(3))
+    F = filled(sampler.F(X, Y, t), np.broadcast_shapes(np.shape(t), np.shape(X), np.shape(Y)))
+    J: Floats = F[..., 0] * F[..., 3] - F[..., 1] * F[..., 2]
+    return J

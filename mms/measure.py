@@ -1,0 +1,166 @@
+"""What a manufactured solution holds, in numbers: sampled over its body, its boundary and its duration.
+
+Nothing is read from names. The symbols that the fields are written in are evaluated first and P, sigma and b from
+their values, so no expression is put into another and all of it takes a tenth of a second.
+"""
+
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+import sympy as sp
+
+from mms.manufacture import Manufactured
+from solver.layout import Layout
+from solver.state import Floats
+
+TIMES = 33  # even steps hit the extremes of a wave whose period divides the duration
+CELLS = 16  # across the body, four places in each
+SHARP = 0.8  # cosine of half the angle between two faces: at the corners of a rectangle there is no one normal
+
+
+class Law(Protocol):
+    """What is needed of the material."""
+
+    rho0: float
+
+    def wave_speed(self) -> float:
+        """Compression wave in the undeformed state."""
+
+
+@dataclass(frozen=True)
+class Sample:
+    """Fields at T times and P places: u, v, acceleration, b (T,P,2); F, P (T,P,2,2); sigma (T,P,4).
+
+    `slope` (T,P,8) are the derivatives of F by X and Y.
+    """
+
+    u: Floats
+    v: Floats
+    F: Floats
+    slope: Floats
+    acceleration: Floats
+    P: Floats
+    sigma: Floats
+    b: Floats
+
+    @property
+    def J(self) -> Floats:
+        """det F (T,P)."""
+        J: Floats = self.F[..., 0, 0] * self.F[..., 1, 1] - self.F[..., 0, 1] * self.F[..., 1, 0]
+        return J
+
+
+class Sampler:
+    """Samples the fields of one manufactured solution; compiled once."""
+
+    def __init__(self, exact: Manufactured) -> None:
+        f = exact.fields
+        place, inner = (*f.X, f.t), list(f.inner)
+        self.F: Any = sp.lambdify(place, f.F, "numpy", cse=True)
+        self.first: Any = sp.lambdify(place, [*f.u, *f.v, *f.inner.values()], "numpy", cse=True)
+        self.last: Any = sp.lambdify(inner, [*f.P, *f.sigma, *f.b], "numpy", cse=True)
+
+    def __call__(self, X: Floats, times: Floats) -> Sample:
+        """Fields at all places (P,2) at all times (T,); what has no value there is NaN or infinite."""
+        shape = (len(times), len(X))
+        with np.errstate(all="ignore"):
+            first = filled(self.first(X[:, 0], X[:, 1], times[:, None]), shape)
+            last = filled(self.last(*np.moveaxis(first[..., 4:], -1, 0)), shape)
+        u, v, F, slope, acceleration = np.split(first, (2, 4, 8, 16), axis=-1)
+        P, sigma, b = np.split(last, (4, 8), axis=-1)
+        return Sample(u, v, F.reshape(*shape, 2, 2), slope, acceleration, P.reshape(*shape, 2, 2), sigma, b)
+
+    def rate(self, X: Floats, times: Floats) -> Floats:
+        """dF/dt (T,P,2,2) by a central difference, to 1e-6: its expressions would double what there is to compile."""
+        h = 1e-4 * float(np.ptp(times))
+        shape = (len(times), len(X))
+        ahead, behind = (filled(self.F(X[:, 0], X[:, 1], times[:, None] + s), shape) for s in (h, -h))
+        rate: Floats = ((ahead - behind) / (2 * h)).reshape(*shape, 2, 2)
+        return rate
+
+
+def filled(values: Any, shape: tuple[int, ...]) -> Floats:
+    """Numbers and arrays as one array (*shape, n)."""
+    return np.stack([np.broadcast_to(np.asarray(value, dtype=float), shape) for value in values], axis=-1)
+
+
+def boundary(layout: Layout) -> tuple[Floats, Floats]:
+    """Corners of domains on the edge of the body, with unit normals outwards, both (B,2); sharp corners are left out.
+
+    A face of one domain alone is on the edge. The normal at a corner is the mean of those of its two faces.
+    """
+    corners = layout.corners.reshape(-1, 2)
+    quantum = 1e-7 * np.ptp(corners, axis=0).max()
+    _, first, number = np.unique(np.rint(corners / quantum), axis=0, return_index=True, return_inverse=True)
+    start = number.reshape(-1, 4)
+    faces = np.stack([start, np.roll(start, -1, axis=1)], axis=-1).reshape(-1, 2)
+    _, which, times = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
+    faces, X = faces[which[times == 1]], corners[first]
+    along = X[faces[:, 1]] - X[faces[:, 0]]
+    normal = np.stack([along[:, 1], -along[:, 0]], axis=-1) / np.hypot(*along.T)[:, None]
+    total = np.zeros(X.shape)
+    np.add.at(total, faces.ravel(), np.repeat(normal, 2, axis=0))
+    length = np.hypot(*total.T)
+    smooth = length > 2 * SHARP
+    return X[smooth], total[smooth] / length[smooth, None]
+
+
+def measure(exact: Manufactured, solution: Any, law: Law) -> dict[str, float]:
+    """Numbers without units, see the lines below; lengths are relative to the body's extent in x, as cells are."""
+    extent = solution.upper - solution.lower
+    width, times = float(extent[0]), np.linspace(0.0, solution.duration, TIMES)
+    layout, sampler = solution.layout(width / CELLS, 4), Sampler(exact)
+    s = sampler(layout.X, times)
+    shift, L = s.F - np.eye(2), sampler.rate(layout.X, times) @ np.linalg.inv(s.F)
+    turned = np.arctan2(s.F[..., 1, 0] - s.F[..., 0, 1], s.F[..., 0, 0] + s.F[..., 1, 1])
+    inertia, load = largest(s.acceleration), largest(s.b)
+    numbers = {
+        "strain": largest(shift),  # of a component of F - I
+        "shear": max(largest(s.F[..., 0, 1]), largest(s.F[..., 1, 0])),
+        "rotation_deg": float(np.degrees(np.abs(turned).max())),  # of R in F = R U
+        "spin": share(largest(L - L.swapaxes(-1, -2)), largest(L)),  # of the velocity gradient
+        "order": share(largest(s.F @ L - L @ s.F), largest(L)),  # whether F and L commute
+        "J_min": float(s.J.min()),
+        "J_max": float(s.J.max()),
+        "gradient": width * largest(s.slope),
+        "displacement": largest(s.u) / width,
+        "start_acceleration": share(largest(s.acceleration[0]), inertia),
+        "start_velocity": share(largest(s.v[0]), largest(s.v)),
+        "load": share(load, inertia),
+        "stress_force": share(largest(s.acceleration - s.b), max(inertia, load)),  # Div P / rho0
+        "stress": largest(s.sigma) / (law.rho0 * law.wave_speed() ** 2),
+        "weaker_component": share(min(largest(s.u[..., 0]), largest(s.u[..., 1])), largest(s.u)),
+        "weaker_direction": share(min(largest(shift[..., :, 0]), largest(shift[..., :, 1])), largest(shift)),
+        "mirror": 1.0,  # how far u is from its mirror image in the diagonal
+    }
+    if np.isclose(*extent):
+        image = sampler(solution.lower + (layout.X - solution.lower)[:, ::-1], times).u[..., ::-1]
+        numbers["mirror"] = share(largest(image - s.u), largest(s.u))
+    return {**numbers, **at_the_edge(s, sampler, layout, times, least_stress(law))}
+
+
+def least_stress(law: Law) -> float:
+    """What stresses are compared with where there is none, as in rigid motion: a strain of 1e-5."""
+    return 1e-5 * law.rho0 * law.wave_speed() ** 2
+
+
+def at_the_edge(s: Sample, sampler: Sampler, layout: Layout, times: Floats, least: float) -> dict[str, float]:
+    """Displacement and traction on the boundary, as shares of the largest displacement and stress in the body."""
+    X, normal = boundary(layout)
+    edge, u, P = sampler(X, times), largest(s.u), max(largest(s.P), least)
+    return {
+        "edge_motion": share(largest(edge.u), u),
+        "edge_normal_motion": share(largest((edge.u * normal).sum(axis=-1)), u),
+        "edge_traction": share(largest((edge.P * normal[:, None, :]).sum(axis=-1)), P),
+    }
+
+
+def largest(values: Floats) -> float:
+    """Largest absolute value of a component."""
+    return float(np.abs(values).max())
+
+
+def share(part: float, whole: float) -> float:
+    """Of what is nothing, every share is zero."""
+    return part / whole if whole > 0 else 0.0

@@ -1,0 +1,263 @@
+"""A user's own solution: it runs like those of the library, and what is wrong with a file is one line."""
+
+import re
+import sys
+from collections.abc import Callable, Iterator
+from dataclasses import asdict, fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from cases.library.mms import execute
+from cases.study import Run
+from mms.check import FINE, check, determinant, least_det
+from mms.manufacture import manufacture
+from mms.measure import Sampler
+from solver import plugins
+from solver.plugins import SOLUTIONS, absolute, create, identity, split
+from verify.main import main
+
+EXAMPLE = "tests/own_solution.py"
+PARTS = """
+import sympy as sp
+def displacement(X, t{more}):
+    x, y = X
+    s, w = sp.sin(sp.pi * x) * sp.sin(sp.pi * y), 1 - sp.cos(100 * sp.pi * t)
+    return {u}
+def domain():
+    return {{"lower": (0, 0), "upper": (1, 1), "duration": 0.02, "speed": 100{domain}}}
+"""
+U = "sp.Matrix([0.05 * s * w, 0.03 * s * w])"
+Write = Callable[..., str]
+
+
+@pytest.fixture(autouse=True)
+def forgotten() -> Iterator[None]:
+    """Files are read once a process: not so between tests."""
+    yield
+    plugins.source.cache_clear()
+    sys.modules["mms.solutions._own"].load.cache_clear()
+
+
+@pytest.fixture
+def write(tmp_path: Path) -> Write:
+    """Writes a file from its parts and returns its path."""
+
+    def text(u: str = U, more: str = "", domain: str = "", whole: str | None = None) -> str:
+        path = tmp_path / "own.py"
+        path.write_text(PARTS.format(u=u, more=more, domain=domain) if whole is None else whole)
+        return str(path)
+
+    return text
+
+
+def checked(path: str, material: str | None = None, cells: tuple[int, ...] = ()) -> Any:
+    """The solution, after its check in a material, its own if none is named."""
+    solution: Any = create(SOLUTIONS, path)
+    check(solution, create("solver.material", material or solution.material), cells)
+    return solution
+
+
+def errors(path: str, *cells: int) -> list[float]:
+    """Error of u in rms, CPDI with 4 particles a cell."""
+    material = create(SOLUTIONS, path).material
+    return [execute(Run("cpdi", path, material, n, 4, 0.4))[0].errors["u"]["rms"] for n in cells]
+
+
+def test_the_example_runs_at_second_order() -> None:
+    """Held below and above, sliding at the sides; measured 3.455e-3, 8.773e-4, a ratio of 3.94."""
+    solution = checked(EXAMPLE, cells=(8, 16))
+    assert solution.boundary == ("roller", "roller", "fixed", "fixed")
+    assert solution.margin == 0
+    coarse, fine = errors(EXAMPLE, 8, 16)
+    assert coarse == pytest.approx(3.455e-3, rel=0.02)
+    assert 3.7 < coarse / fine < 4.3
+
+
+def test_free_ends_run(write: Write) -> None:
+    """With nu = 0 a stretch along x pulls nowhere along y; it ends without stress, and the edge moves."""
+    path = write(
+        "sp.Matrix([-0.04 * sp.cos(sp.pi * x) * sp.sin(100 * sp.pi * t + 0.6), 0])",
+        domain=', "material": "neo_hookean:nu=0", "boundary": "free"',
+    )
+    solution = checked(path)
+    assert solution.boundary == "free"
+    assert 0.04 < solution.margin < 0.06
+    coarse, fine = errors(path, 8, 16)
+    assert coarse / fine > 2
+    with pytest.raises(ValueError, match=r"the bottom edge .*traction across it .* at .X, Y. = .*, t = "):
+        checked(path, "neo_hookean:nu=0.3")
+
+
+def test_one_free_side(write: Write) -> None:
+    """A margin on the free side alone: a wall stands at the edge of the body."""
+    path = write("sp.Matrix([0.04 * sp.sin(sp.pi * x / 2) * w, 0])", domain=', "material": "neo_hookean:nu=0"')
+    solution = checked(path)
+    assert solution.boundary == ("fixed", "free", "roller", "roller")
+    np.testing.assert_allclose(solution.margin, [[0, 0], [0.1, 0]], rtol=0.01)
+
+
+def test_an_order_of_ones_own(write: Write) -> None:
+    assert create(SOLUTIONS, write(domain=', "order": 2')).order == 2
+    assert create(SOLUTIONS, EXAMPLE).order is None
+
+
+def test_a_named_boundary(write: Write) -> None:
+    assert checked(write(domain=', "boundary": "fixed"')).boundary == "fixed"
+
+
+def test_a_named_boundary_that_does_not_hold(write: Write) -> None:
+    with pytest.raises(ValueError, match=r"the left edge cannot be roller: .*traction along it [1-9]"):
+        checked(write(domain=', "boundary": "roller"'))
+
+
+def test_parameters(write: Write) -> None:
+    path = write("sp.Matrix([A * s * w, B * s * w])", more=", A=0.05, B=0.03")
+    solution = create(SOLUTIONS, f"{path}:A=0.01")
+    assert [f.name for f in fields(solution)] == ["A", "B"]
+    assert asdict(solution) == {"A": 0.01, "B": 0.03}
+    assert solution == create(SOLUTIONS, f"{path}:A=0.01")
+    u = {A: manufacture(create(SOLUTIONS, f"{path}:A={A}"), create("solver.material", "neo_hookean"), 1.0).u
+         for A in (0.01, 0.02)}  # fmt: skip
+    X = np.array([[0.3, 0.4]])
+    np.testing.assert_allclose(u[0.02](X, 0.005)[0] / u[0.01](X, 0.005)[0], [2, 1], rtol=1e-12)
+    with pytest.raises(ValueError, match=r"own.py has no parameter 'C'; it has A, B"):
+        create(SOLUTIONS, f"{path}:C=1")
+
+
+def test_a_rectangle_and_its_cells(write: Write) -> None:
+    whole = PARTS.format(u=U.replace("s * w", "s * w"), more="", domain="").replace(
+        '"upper": (1, 1)', '"upper": (3, 1)'
+    )
+    path = write(whole=whole)
+    solution = checked(path, cells=(9, 12))
+    assert len(solution.layout(3 / 9, 4)) == 9 * 3 * 4
+    with pytest.raises(ValueError, match=r"8 cells over the width of 3 do not fill the height of 1; .*multiples of 3"):
+        checked(path, cells=(9, 8))
+
+
+def test_split() -> None:
+    assert split("axis_aligned:A=1,L=2") == ("axis_aligned", "A=1,L=2")
+    assert split("dir:1/own.py:A=0.02") == ("dir:1/own.py", "A=0.02")
+    assert split("a.py/own.py") == ("a.py/own.py", "")
+    assert split(r"C:\own.py:A=1") == (r"C:\own.py", "A=1")
+
+
+def test_identity_is_the_content(write: Write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The same file elsewhere is the same solution; another text in the same file is another."""
+    path = write()
+    first = identity(path)
+    copy = tmp_path / "copy.py"
+    copy.write_text(Path(path).read_text())
+    assert identity(str(copy)) == first != identity(f"{path}:A=1")
+    write(domain=" ")
+    assert identity(path) == first  # what was read is what runs in this process
+    plugins.source.cache_clear()
+    assert identity(path) != first
+    assert identity("axis_aligned:A=0.01") == "axis_aligned:A=0.01"
+    assert identity(str(tmp_path / "gone.py")).startswith("unreadable")
+    monkeypatch.chdir(tmp_path)
+    assert absolute("own.py:A=1") == f"{path}:A=1"
+    assert absolute("axis_aligned:A=1") == "axis_aligned:A=1"
+
+
+BAD: dict[str, tuple[dict[str, str], str]] = {
+    "syntax": ({"whole": "def displacement(X, t:\n"}, r"own.py, line 1: "),
+    "raises on import": ({"whole": "\n\n1 / 0\n"}, r"own.py, line 3: ZeroDivisionError: division by zero$"),
+    "leaves": ({"whole": "raise SystemExit('bye')\n"}, r"own.py, line 1: SystemExit: bye$"),
+    "raises later": ({"u": "sp.Matrix([nothing, 0])"}, r"own.py, line 6: NameError: name 'nothing' is not defined$"),
+    "no function": ({"whole": "x = 1\n"}, r"own.py has no function displacement\(X, t\)$"),
+    "no domain": ({"whole": "def displacement(X, t): return 0, 0"}, r"own.py has no function domain\(\)$"),
+    "arguments": ({"whole": "def displacement(X): pass\ndef domain(): pass"}, r"displacement must take \(X, t\) and"),
+    "a word as default": ({"more": ", A='x'"}, r"parameter A, which needs a number as default"),
+    "a taken name": ({"more": ", C=1.0"}, r"parameter C, which needs .* a name other than those"),
+    "shape": ({"u": "sp.Matrix([s, s, s])"}, r"displacement must return sp.Matrix\(\[u_x, u_y\]\), not Matrix"),
+    "no SymPy": ({"u": "'up'"}, r"displacement must return sp.Matrix.*, not up$"),
+    "no expression": ({"u": "[s, 'up']"}, r"displacement must return sp.Matrix"),
+    "symbols": ({"u": "sp.Matrix([sp.Symbol('z') * s, s])"}, r"the unknown symbols z; use the X and t it is given$"),
+    "a kink": ({"u": "sp.Matrix([s * abs(x - 0.5), s])"}, r"displacement has Abs\(X - 0.5\); use numbers, powers"),
+    "complex": ({"u": "sp.Matrix([sp.I * s, s])"}, r"displacement has "),
+    "a step": ({"u": "sp.Matrix([s * sp.Piecewise((1, x > 0.5), (0, True)), s])"}, r"displacement has Piecewise"),
+    "nothing moves": ({"u": "sp.Matrix([0, 0])"}, r"nothing moves"),
+    "u infinite": ({"u": "sp.Matrix([s * sp.log(x), s])"},
+                   r"u is not finite at \(X, Y\) = \(0, 0\), t = 0$"),
+    "F infinite": ({"u": "sp.Matrix([0.01 * sp.sqrt(x) * sp.sin(sp.pi * x)**0 * y * (1 - x) * w, s])"},
+                   r"F is not finite at \(X, Y\) = \(0, 0\), t = "),
+    "b infinite": ({"u": "sp.Matrix([0.05 * s * x * sp.sqrt(x) * 0 + 0.05 * x**sp.Rational(3, 2) * (1 - x) * w, 0])"},
+                   r"the body force is not finite at \(X, Y\) = \(0, 0\), t = 0"),
+    "inverted": ({"u": "sp.Matrix([s * w, 0])"}, r"F is not invertible: det F = -\d\S* at \(X, Y\) = .*, t = 0.01$"),
+    "moving edge": ({"u": "sp.Matrix([0.05 * w * x, 0])"},
+                    r"the right edge is neither fixed nor roller nor free: u across it 0.1 at \(X, Y\) = \(1, 0\), "
+                    r"t = 0.01; u along it 0 at .*; traction across it \d.*; traction along it 0 at"),
+    "keys": ({"domain": ", 'sped': 1"}, r"domain returns .*; it must return a dictionary with lower"),
+    "numbers": ({"domain": ", 'duration': 'long'"}, r"domain has duration = long, which is no finite number$"),
+    "corners": ({"domain": ", 'upper': (0, 1)"}, r"domain has upper = \(0, 1\), not above lower = \(0, 0\)$"),
+    "three numbers": ({"domain": ", 'upper': (1, 1, 1)"}, r"domain has upper = \(1, 1, 1\); write two numbers$"),
+    "time": ({"domain": ", 'duration': -1"}, r"domain has duration = -1, which must be above zero$"),
+    "order": ({"domain": ", 'order': 0"}, r"domain has order = 0, which must be above zero$"),
+    "no time": ({"domain": ", 'duration': None"}, r"domain has duration = None, which is no finite number$"),
+    "boundary": ({"domain": ", 'boundary': 'sticky'"}, r"boundary = sticky; write one of fixed, roller, free, or four"),
+    "boundary type": ({"domain": ", 'boundary': 3"}, r"boundary = 3; write one of fixed, roller, free, or four"),
+    "ratio": ({"domain": ", 'upper': (1, 3.14159265)"}, r"no square cells fill a rectangle of 1 x 3.14159"),
+    "material": ({"domain": ", 'material': 'jelly'"}, r"no material 'jelly'; choose from"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_bad_files(write: Write, name: str) -> None:
+    """One line that names the file, and what is wrong with it."""
+    parts, said = BAD[name]
+    with pytest.raises(ValueError, match=said) as raised:
+        checked(write(**parts))
+    assert "\n" not in str(raised.value)
+    assert name == "material" or re.match(r"\S*own\.py", str(raised.value))
+
+
+def test_no_such_file() -> None:
+    with pytest.raises(ValueError, match=r"^tests/nowhere.py: no such file or directory$"):
+        create(SOLUTIONS, "tests/nowhere.py")
+    with pytest.raises(ValueError, match=r"choose from .*, or give a file"):
+        create(SOLUTIONS, "nowhere")
+    with pytest.raises(ValueError, match=r"no material 'own.py'; choose from"):
+        create("solver.material", "own.py")
+
+
+DIP = "sp.Matrix([-A * (x - 0.50371) * sp.exp(-((x - 0.50371)**2 + (y - 0.49812)**2) / 0.012**2) * s * w, 0])"
+
+
+@pytest.mark.parametrize(("A", "good"), [(0.495, True), (0.51, False)])
+def test_a_dip_between_the_samples(write: Write, A: float, good: bool) -> None:
+    """det F is 1 - 2 A at its least, in a spot of a thousandth of the side, which no sample hits."""
+    solution: Any = create(SOLUTIONS, write(DIP, more=f", A={A}"))
+    sampler = Sampler(manufacture(solution, create("solver.material", "neo_hookean"), 1.0))
+    low, high = np.array([0.0, 0.0, 0.0]), np.array([solution.duration, 1.0, 1.0])
+    axes = np.meshgrid(*[np.linspace(0, 1, n) for n in FINE], indexing="ij", sparse=True)
+    assert determinant(sampler, low, high, *axes).min() > 0.01
+    place, J = least_det(solution, sampler)
+    assert pytest.approx(1 - 2 * A, abs=2e-3) == J
+    np.testing.assert_allclose(place, [0.01, 0.50371, 0.49812], atol=1e-3)
+    if good:
+        checked(str(solution.path))
+    else:
+        with pytest.raises(ValueError, match=r"F is not invertible: det F = -0.0\d+ at .X, Y. = .0.503\d*, 0.498"):
+            checked(str(solution.path))
+
+
+@pytest.mark.parametrize("words", [["audit"]])
+def test_command(
+    write: Write, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], words: list[str]
+) -> None:
+    """`verify audit own.py`: an audit, and exit code 2 with one line for a bad file."""
+    for u, code in ((U, 0), ("sp.Matrix([s * w, 0])", 2)):
+        plugins.source.cache_clear()
+        sys.modules["mms.solutions._own"].load.cache_clear()  # type: ignore[attr-defined]
+        monkeypatch.setattr(sys, "argv", ["verify", *words, write(u)])
+        with pytest.raises(SystemExit) as ended:
+            main()
+        assert ended.value.code == code
+    out, err = capsys.readouterr()
+    assert "cannot see" in out
+    assert err.count("\n") == 1
+    assert "F is not invertible" in err
