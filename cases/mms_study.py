@@ -1,28 +1,44 @@
-"""Builds the MMS study from what is asked for: its runs, and what it declares to judge and to show."""
+"""Builds the MMS study from what is asked for: its runs, and what it declares to judge and to show.
+
+Four axes are refined apart from each other: cells and particles per cell as a full table, `times` on the finest cells,
+and the position of the particles in their cells, `replicates`, at every point of the table.
+"""
 
 import re
 from dataclasses import dataclass, fields, replace
 from math import isqrt
 from typing import Any
 
-from cases.expectations import expected
+from cases.expectations import JUDGED, expected
 from cases.study import NORMS, QUANTITIES, Declared, Run, Study
-from solver.plugins import MATERIALS, METHODS, SOLUTIONS, available, create
+from mms.layouts import LAYOUTS
+from solver.layout import CENTRED, Offset
+from solver.orders import check_stress
+from solver.plugins import MATERIALS, METHODS, SOLUTIONS, TRANSFERS, absolute, available, create, is_file, split
+
+MOST = 64  # replicates
 
 
 @dataclass(frozen=True)
 class Sweep:
-    """What is asked for: the axes of the sweep and the settings that all its runs share."""
+    """What is asked for: the axes of the sweep and the settings that all its runs share.
+
+    `courant` is that of the table of cells and particles; `times` are smaller ones for the finest cells.
+    """
 
     methods: tuple[str, ...] = ("cpdi",)
     solution: str = "axis_aligned"
-    material: str = "neo_hookean"
+    material: str = ""  # the solution's own
     cells: tuple[int, ...] = (8, 16, 32, 64, 128)
     ppc: tuple[int, ...] = (1, 4, 9)
     courant: float = 0.4
-    flip: float = 1.0
+    transfer: str = "flip"
+    stress: str = "usl"
     staggered: bool = True
     force: bool = False
+    times: tuple[float, ...] = ()
+    replicates: int = 1
+    layout: str = "uniform"
 
     @property
     def name(self) -> str:
@@ -47,18 +63,33 @@ class Sweep:
         for count in self.ppc:
             if count < 1 or isqrt(count) ** 2 != count:
                 raise ValueError(f"{count} particles per cell is no square number; choose from 1, 4, 9, 16, ...")
-        if not 1e-3 <= self.courant <= 10:
-            raise ValueError(f"courant = {self.courant} cannot be run; choose 0.001 to 10, 0.4 is usual")
-        if not 0 <= self.flip <= 1:
-            raise ValueError(f"flip = {self.flip} must lie between 0 (PIC) and 1 (FLIP)")
-        create(SOLUTIONS, self.solution)
-        create(MATERIALS, self.material)
+        for courant in (self.courant, *self.times):
+            if not 1e-3 <= courant <= 10:
+                raise ValueError(f"courant = {courant} cannot be run; choose 0.001 to 10, 0.4 is usual")
+            if courant > self.courant:
+                raise ValueError(
+                    f"courant = {courant} is above the first, {self.courant}; begin with the largest: 0.4,0.2,0.1"
+                )
+        if not 1 <= self.replicates <= MOST:
+            raise ValueError(f"replicates = {self.replicates} cannot be run; choose whole numbers from 1 to {MOST}")
+        check_stress(self.stress)
+        create(TRANSFERS, self.transfer)
+        layout = create(LAYOUTS, self.layout)
+        solution = create(SOLUTIONS, self.solution)
+        law = create(MATERIALS, self.material or solution.material)
+        layout.check(solution)
+        if is_file(self.solution):
+            from mms.check import check  # derives the fields: some tenths of a second
+
+            check(solution, law, self.cells)
 
 
 def build(sweep: Sweep, command: str, name: str) -> Study:
     """The Study of a sweep, checked. Raises ValueError, see Sweep.check."""
     sweep.check()
-    solution, material = canonical(SOLUTIONS, sweep.solution), canonical(MATERIALS, sweep.material)
+    solution = canonical(SOLUTIONS, sweep.solution)
+    material = canonical(MATERIALS, sweep.material or create(SOLUTIONS, solution).material)
+    transfer = canonical(TRANSFERS, sweep.transfer)
     declared = tuple(
         declare(sweep, (method, solution, material), ppc, quantity, norm)
         for method in sweep.methods
@@ -66,31 +97,56 @@ def build(sweep: Sweep, command: str, name: str) -> Study:
         for quantity in QUANTITIES
         for norm in NORMS
     )
+    layout = canonical(LAYOUTS, sweep.layout)
+    first = Run("", solution, material, 1, 1, sweep.courant, transfer, sweep.stress, sweep.staggered, sweep.force)
     runs = [
-        Run(method, solution, material, cells, ppc, sweep.courant, sweep.flip, sweep.staggered, sweep.force)
+        replace(first, method=method, cells=cells, ppc=ppc, layout=layout)
         for method in sweep.methods
         for ppc in sorted(set(sweep.ppc))
         for cells in sorted(set(sweep.cells))
     ]
+    finest = [run for run in runs if run.cells == max(sweep.cells)]
     halved = [
         replace(run, courant=run.courant / 2)
-        for run in runs
-        if run.cells == max(sweep.cells) and any(converges(d) and belongs(d, run) for d in declared)
+        for run in finest
+        if any(converges(d) and belongs(d, run) for d in declared)
     ]
-    title = f"{' and '.join(m.upper() for m in sweep.methods)} against the manufactured solution {solution}"
-    return Study(name, title, command, tuple(runs + halved), declared)
+    timed = [replace(run, courant=courant) for run in finest for courant in sorted(set(sweep.times), reverse=True)]
+    shifted = [replace(run, offset=offset) for run in runs for offset in offsets(sweep.replicates)[1:]]
+    every = tuple(dict.fromkeys(runs + halved + timed + shifted))
+    named = (
+        " and ".join(m.upper() for m in sweep.methods) if len(sweep.methods) < 4 else f"{len(sweep.methods)} methods"
+    )
+    title = f"{named} against the manufactured solution {solution}"
+    return Study(name, title, command, every, declared)
+
+
+def offsets(replicates: int) -> list[Offset]:
+    """Where the particles of each replicate lie: shares of their spacing in (-1/2, 1/2), the usual place first.
+
+    The others are the Halton sequence (Halton 1960), without its zero: it covers the square evenly, and more replicates
+    keep the places of fewer, so that stored runs serve again.
+    """
+    if replicates == 1:
+        return [CENTRED]
+    from scipy.stats.qmc import Halton  # slow to import
+
+    places = Halton(2, scramble=False).random(replicates)[1:] - 0.5
+    return [CENTRED, *((float(a), float(b)) for a, b in places)]
 
 
 def declare(sweep: Sweep, names: tuple[str, str, str], ppc: int, quantity: str, norm: str) -> Declared:
-    """A quantity with its registered expectation; judged if it has one. Of PIC blends nothing is registered."""
+    """A quantity with its registered expectation, of FLIP and update-stress-last alone; u in rms is judged."""
     usual = sweep.courant == Sweep.courant and sweep.staggered
-    expectation = expected(*names, ppc, quantity, norm, usual) if sweep.flip == 1 else None
-    return Declared(names[0], names[1], ppc, quantity, norm, expectation is not None, expectation)
+    scheme = (canonical(TRANSFERS, sweep.transfer), sweep.stress, canonical(LAYOUTS, sweep.layout))
+    expectation = expected(*names, ppc, quantity, norm, usual) if scheme == ("flip", "usl", "uniform") else None
+    judged = expectation is not None and (quantity, norm) == JUDGED
+    return Declared(names[0], names[1], ppc, quantity, norm, judged, expectation)
 
 
 def converges(declared: Declared) -> bool:
     """Judged against an order, and so in need of the run with half the time step."""
-    return declared.expectation is not None and declared.expectation.order is not None
+    return declared.judged and declared.expectation is not None and declared.expectation.order is not None
 
 
 def belongs(declared: Declared, run: Run) -> bool:
@@ -105,4 +161,4 @@ def canonical(package: str, specification: str) -> str:
     changed = [
         f"{key}={repr(value).removesuffix('.0')}" for key, (value, usual) in sorted(values.items()) if value != usual
     ]
-    return ":".join([specification.partition(":")[0], *filter(None, [",".join(changed)])])
+    return ":".join([split(absolute(specification))[0], *filter(None, [",".join(changed)])])

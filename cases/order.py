@@ -212,13 +212,14 @@ def _non_convergence(q: Quantity, confidence: float) -> Finding:
     if seen:
         return PASS, f"{'stalls' if e.stall is not None else 'does not converge'}, as expected: {', and '.join(seen)}"
     least = CONVERGES if e.stall is None else e.stall
-    if len(h) >= LEVELS and slope and min(slope.interval(confidence)[0], *orders) > least:
+    fine = e.stall_h is None or h[-1] <= e.stall_h * (1 + 1e-9)
+    if fine and len(h) >= LEVELS and slope and min(slope.interval(confidence)[0], *orders) > least:
         return FAIL, f"a surprise: not expected to converge, the error fell {_path(q.fit)}, order {slope.value:.2f}"
     went = f"the error went {_path(q.fit)}" if h[1:].size else f"one level finished, h={_inverse(h[0])}"
     wanted = (
         "neither growth nor convergence" if e.stall is None else f"neither a stall below {e.stall:g} nor convergence"
     )
-    return INCONCLUSIVE, f"{wanted}: {went}: {q.finer}"
+    return INCONCLUSIVE, f"{wanted}: {went}: {q.finer if fine else f'run h={_inverse(e.stall_h or 0.0)}'}"
 
 
 def _path(fit: Fit, start: int = 0) -> str:

@@ -22,7 +22,8 @@ class Expectation:
     """Registered before the run: the band [order - below, order + above], its source, and the recorded error.
 
     `constant` is the error once recorded at cell size `constant_h`. An order of None expects non-convergence: growth of
-    the error, runs that end with `lost` in their reason, or, if `stall` is given, a local order that falls below it.
+    the error, runs that end with `lost` in their reason, or, if `stall` is given, a local order that falls below it
+    on cells of `stall_h` or finer.
     Raises ValueError if only one of the two is given, if the band has no width, or for a stall beside an order.
     """
 
@@ -33,6 +34,7 @@ class Expectation:
     constant: float | None = None
     constant_h: float | None = None
     stall: float | None = None
+    stall_h: float | None = None
     lost: str = "det F"
 
     def __post_init__(self) -> None:

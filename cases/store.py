@@ -2,7 +2,7 @@
 
 DIR/study.json           the Study
 DIR/runs/<digest>.json   a Result
-DIR/runs/<digest>.npz    the particles at its last step: X, x (P,2), F (P,2,2), r0 (P,2,2), error_u (P,), float32
+DIR/runs/<digest>.npz    the particles at its last step: X, x (P,2), F (P,2,2), corners (P,4,2), error_u (P,), float32
 """
 
 import fcntl

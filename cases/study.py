@@ -8,6 +8,8 @@ from math import inf
 from typing import Literal
 
 from cases.records import Expectation
+from mms.spots import Spot
+from solver.plugins import identity
 from solver.sources import TOP, digest
 
 FORMAT = 1  # of study.json and of every Result; a reader refuses another number
@@ -32,7 +34,8 @@ def sources_digest() -> str:
 class Run:
     """One frozen point of a sweep; its digest is its name.
 
-    `solution` and `material` are specifications: a name, or a name with parameters (`axis_aligned:A=0.01,phase=0.5`).
+    `solution`, `material` and `transfer` are specifications: a name, or a name with parameters
+    (`axis_aligned:A=0.01,phase=0.5`); `stress` is a word of solver/orders.py.
     `courant` is C dt / dx, with C the reference speed of the solution. `offset` shifts the particles in their cells, by
     shares of their spacing; `layout` says how they are spread.
     """
@@ -43,7 +46,8 @@ class Run:
     cells: int
     ppc: int
     courant: float
-    flip: float = 1.0
+    transfer: str = "flip"
+    stress: str = "usl"
     staggered: bool = True
     force: bool = False
     case: str = "mms"
@@ -57,8 +61,13 @@ class Run:
     @property
     def digest(self) -> str:
         """Name of the Result: hash of the parameters and of the sources, 16 hex digits."""
-        text = json.dumps(asdict(self), sort_keys=True) + sources_digest()
-        return hashlib.sha256(text.encode()).hexdigest()[:16]
+        return _digest(self, sources_digest())
+
+
+@cache
+def _digest(run: Run, sources: str) -> str:
+    text = json.dumps({**asdict(run), "solution": identity(run.solution)}, sort_keys=True) + sources
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 @dataclass(frozen=True)
@@ -74,6 +83,20 @@ class Failure:
         where = f", particle {self.particle}" if self.particle >= 0 else ""
         where += f" in cell {self.cell}" if self.cell else ""
         return f"{self.reason} at step {self.step}{where}"
+
+
+@dataclass(frozen=True)
+class Packed:
+    """How well particles were packed. `fewest` in a cell that the body filled, over the run, and such a cell.
+
+    None where the body never filled one. `widest` is the largest side of a domain at first, in cells, and `steepest`
+    the largest ratio of the volumes of two neighbours.
+    """
+
+    fewest: int | None
+    cell: tuple[int, int] | None
+    widest: float
+    steepest: float
 
 
 @dataclass(frozen=True)
@@ -95,6 +118,9 @@ class Result:
     environment: dict[str, str] = field(default_factory=dict)
     crossings: int = 0  # faces of cells that particles passed
     cpu_s: float = 0.0  # processor time of the steps, all threads
+    gap: float | None = None  # see cases.gaps.Gaps; None for methods that know points only
+    packed: Packed | None = None  # see cases.packing.Packing; None where nobody looked
+    audit: tuple[Spot, ...] = ()  # what a study of the solution cannot see, and what it can
     parameters: dict[str, float] = field(default_factory=dict)  # of solution and material, the defaults too
     format: int = FORMAT
 

@@ -1,28 +1,45 @@
 """From Results to verdicts: which levels belong to which declared quantity, and what the order rule says of them."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from cases.axes import crossed, error, level, local, middle, replicated
 from cases.order import Expectation, Level, Outcome, Quantity, Verdict, judge, judge_family
+from cases.series import Head, Series, collect
+from cases.stall import BELOW, USUAL, Measured, Peer, Stall, explain
 from cases.study import Declared, Result, Run, Study
 
 EXIT = {Outcome.PASS: 0, Outcome.FAIL: 1, Outcome.ERROR: 2, Outcome.INCONCLUSIVE: 3}
 NOTHING_EXPECTED = Expectation(order=None)  # only its slope is used
+STALLS = ("u", "rms")  # other quantities have orders of their own, which nobody has registered
+DOUBLE = 1.8
+Results = Mapping[str, Result]
 
 
 @dataclass(frozen=True)
 class Finding:
-    """A declared quantity with its verdict. Where it is only shown, the verdict is shown too and decides nothing."""
+    """A declared quantity with its verdict. Where it is only shown, the verdict is shown too and decides nothing.
+
+    `results` are those of the levels with the particles at their usual places, None for runs not done.
+    """
 
     declared: Declared
     verdict: Verdict
     levels: tuple[Level, ...]  # coarse to fine
     finest: Result | None
+    results: tuple[Result | None, ...] = ()
+    stall: Stall | None = None
+
+    @property
+    def crossings(self) -> tuple[float | None, ...]:
+        """Faces of cells that a particle passed in the run of each level."""
+        return tuple(crossed(result) for result in self.results)
 
 
-def findings(study: Study, results: Mapping[str, Result]) -> list[Finding]:
+def findings(study: Study, results: Results) -> list[Finding]:
     """Findings in the order of the declarations; `results` by digest, those not there are runs not done."""
-    quantities = [_quantity(d, study.runs, results) for d in study.declared]
+    known = {series.head: series for series in collect(study.runs)}
+    quantities = [_quantity(d, known.get(_head(d)), results) for d in study.declared]
     judged = [i for i, d in enumerate(study.declared) if d.judged]
     verdicts = dict(zip(judged, judge_family([quantities[i] for i in judged]), strict=True))
     found = []
@@ -30,9 +47,10 @@ def findings(study: Study, results: Mapping[str, Result]) -> list[Finding]:
         verdict = verdicts.get(i) or judge(
             quantity.levels, quantity.expectation, floor=quantity.floor, dt_halved=quantity.dt_halved
         )
-        finest = [results[r.digest] for r in refinement(declared, study.runs)[-1:] if r.digest in results]
-        found.append(Finding(declared, verdict, tuple(quantity.ordered), finest[0] if finest else None))
-    return found
+        series = known.get(_head(declared))
+        done = tuple(results.get(run.digest) for run in series.runs) if series else ()
+        found.append(Finding(declared, verdict, tuple(quantity.ordered), done[-1] if done else None, done))
+    return _with_stalls(found, known, results)
 
 
 def exit_code(found: Sequence[Finding]) -> int:
@@ -42,36 +60,93 @@ def exit_code(found: Sequence[Finding]) -> int:
 
 
 def refinement(declared: Declared, runs: Sequence[Run]) -> list[Run]:
-    """The runs of a declared quantity at the Courant number of the study, coarse to fine."""
-    mine = [r for r in runs if (r.method, r.solution, r.ppc) == (declared.method, declared.solution, declared.ppc)]
-    courant = max((r.courant for r in mine), default=0.0)
-    return sorted((r for r in mine if r.courant == courant), key=lambda r: r.cells)
+    """The runs of a declared quantity at the Courant number of the study, coarse to fine, at their usual places."""
+    return next((list(series.runs) for series in collect(runs) if series.head == _head(declared)), [])
 
 
-def _quantity(declared: Declared, runs: Sequence[Run], results: Mapping[str, Result]) -> Quantity:
+def _head(declared: Declared) -> Head:
+    return declared.method, declared.solution, declared.ppc
+
+
+def _quantity(declared: Declared, series: Series | None, results: Results) -> Quantity:
     """The levels of one declared quantity, and its error with half the time step on the finest level."""
-    series = refinement(declared, runs)
-    levels = [Level(1 / run.cells, *_error(declared, results.get(run.digest))) for run in series]
-    floors = [r.floor.get(declared.quantity, 0.0) for run in series if (r := results.get(run.digest))]
-    half = [
-        results[r.digest].errors[declared.quantity][declared.norm]
-        for r in runs
-        if series
-        and (r.method, r.solution, r.ppc, r.cells)
-        == (declared.method, declared.solution, declared.ppc, series[-1].cells)
-        and r.courant < series[-1].courant
-        and r.digest in results
-        and results[r.digest].status == "finished"
+    if series is None:
+        return Quantity([], declared.expectation or NOTHING_EXPECTED, 0.0, None)
+    levels = [
+        Level(1 / runs[0].cells, *level(runs, results, declared.quantity, declared.norm)) for runs in series.replicates
     ]
-    return Quantity(
-        levels, declared.expectation or NOTHING_EXPECTED, max(floors, default=0.0), half[0] if half else None
+    floors = [r.floor.get(declared.quantity, 0.0) for run in series.runs if (r := results.get(run.digest))]
+    half = error(series.halved, results, declared.quantity, declared.norm) if series.halved else None
+    return Quantity(levels, declared.expectation or NOTHING_EXPECTED, max(floors, default=0.0), half)
+
+
+def _with_stalls(found: Sequence[Finding], known: Mapping[Head, Series], results: Results) -> list[Finding]:
+    """The findings, those of the displacement with the stall of their refinement."""
+    displacements = [f for f in found if (f.declared.quantity, f.declared.norm) == STALLS and f.levels]
+    peers = {_head(f.declared): peer for f in displacements if (peer := _peer(f))}
+    stalls = {_head(f.declared): explain(_measured(f, known, results, peers)) for f in displacements}
+    return [replace(f, stall=stalls.get(_head(f.declared))) if f in displacements else f for f in found]
+
+
+def _peer(found: Finding) -> Peer | None:
+    """What other methods are told of this one; None if a level has no error."""
+    if any(each.ended for each in found.levels):
+        return None
+    done = doublings(found)
+    order = local([(each.h, middle(each.errors)) for each, _ in done])[-1:]
+    finest = done[-1][1] if done else None
+    if finest is None or not order or order[0] is None:
+        return None
+    return Peer(found.declared.method, order[0], crossed(finest) or 0.0, finest.gap)
+
+
+def _measured(found: Finding, known: Mapping[Head, Series], results: Results, peers: Mapping[Head, Peer]) -> Measured:
+    """The numbers that can tell why a refinement stalls."""
+    d, series = found.declared, known[_head(found.declared)]
+    done = doublings(found)
+    cells = tuple(result.run.cells for _, result in done)
+    lost = [
+        f"the run with {result.run.cells} cells ended: {result.failure}"
+        for result in found.results
+        if result and result.failure and cells and result.run.cells > cells[-1]
+    ]
+    order = d.expectation.order if d.expectation and d.expectation.order is not None else USUAL
+    others = [peer for key, peer in peers.items() if key[0] != d.method and key[1:] == (d.solution, d.ppc)]
+    finest = bool(done) and done[-1][1].run == series.runs[-1]  # else the run with half the time step is of other cells
+    return Measured(
+        cells,
+        tuple(middle(each.errors) for each, _ in done),
+        tuple(crossed(result) or 0.0 for _, result in done),
+        tuple(result.gap for _, result in done),
+        d.ppc,
+        max((result.floor.get(d.quantity, 0.0) for _, result in done), default=0.0),
+        error(series.halved, results, *STALLS) if series.halved and finest else None,
+        _other(series, known, results, cells),
+        tuple(others),
+        lost[0] if lost else "",
+        order,
+        d.expectation.below if d.expectation and d.expectation.order is not None else BELOW,
     )
 
 
-def _error(declared: Declared, result: Result | None) -> tuple[tuple[float, ...], str]:
-    """Errors and failure text of a level."""
-    if result is None:
-        return (), "not run yet"
-    if result.status == "failed":
-        return (), str(result.failure)
-    return (result.errors[declared.quantity][declared.norm],), ""
+def doublings(found: Finding) -> list[tuple[Level, Result]]:
+    """The finest finished level and those with about half the cells of the next: over less, orders scatter too much."""
+    kept: list[tuple[Level, Result]] = []
+    for each, result in reversed(list(zip(found.levels, found.results, strict=True))):
+        if result and not each.ended and (not kept or each.h >= DOUBLE * kept[0][0].h):
+            kept.insert(0, (each, result))
+    return kept
+
+
+def _other(
+    series: Series, known: Mapping[Head, Series], results: Results, cells: Sequence[int]
+) -> tuple[int, tuple[float, ...]] | None:
+    """Errors of the two finest of `cells` with the next larger particle count, or else the next smaller one."""
+    method, solution, ppc = series.head
+    counts = [head[2] for head in known if head[:2] == (method, solution) and head[2] != ppc]
+    for count in sorted(counts, key=lambda count: (count < ppc, abs(count - ppc))):
+        other = known[method, solution, count]
+        levels = dict(zip((run.cells for run in other.runs), replicated(other, results, *STALLS), strict=True))
+        if cells and levels.get(cells[-1]):
+            return count, tuple(middle(levels[n]) for n in cells[-2:] if levels.get(n))
+    return None

@@ -5,7 +5,7 @@ from typing import Any
 
 from mms.manufacture import Manufactured
 from mms.measure import Law, measure
-from mms.spots import RULES, Numbers, Spot
+from mms.spots import ALWAYS, RULES, Numbers, Spot
 
 
 @dataclass(frozen=True)
@@ -24,18 +24,6 @@ class Audit:
     def seen(self) -> tuple[Spot, ...]:
         """What it can."""
         return tuple(spot for spot in self.spots if not spot.blind)
-
-
-ALWAYS = (
-    Spot(
-        "orders",
-        "Orders alone let defects pass. In a probe apart from this program, of 46 defects planted in a CPDI code, "
-        "the order of the displacement caught 33, the orders of all quantities 36, and all checks together, "
-        "exactness and physics among them, 44.",
-        True,
-    ),
-    Spot("constants", "A wrong constant leaves the order as it is; only a recorded magnitude sees it.", True),
-)
 
 
 def audit(exact: Manufactured, solution: Any, law: Law) -> Audit:

@@ -45,6 +45,18 @@ class Spot:
     blind: bool
 
 
+ALWAYS = (
+    Spot(
+        "orders",
+        "Orders alone let defects pass. In a probe apart from this program, of 46 defects planted in a CPDI code, "
+        "the order of the displacement caught 33, the orders of all quantities 36, and all checks together, "
+        "exactness and physics among them, 44.",
+        True,
+    ),
+    Spot("constants", "A wrong constant leaves the order as it is; only a recorded magnitude sees it.", True),
+)
+
+
 def spot(key: str, blind: bool, cannot: str, can: str) -> Spot:
     """The sentence that applies; of what is blind, with the solutions of the library that see it."""
     return Spot(key, f"{cannot} Seen by {', '.join(SEEN_BY[key])}." if blind else can, blind)

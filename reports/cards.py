@@ -6,13 +6,17 @@ from math import log
 
 from cases.order import Outcome
 from cases.verdicts import Finding
-from reports import words
+from reports import audited, words
+from reports.stalls import short
 from reports.stored import Record
 
 DIVERGES = {
     Outcome.PASS: "Does not converge, as registered before the run",
+    Outcome.INCONCLUSIVE: "Not decided",
+    Outcome.ERROR: "Nothing to judge",
     Outcome.FAIL: "Converges, and that was not expected",
 }
+STALLS = {**DIVERGES, Outcome.PASS: "Its order falls with refinement, as registered before the run"}
 PLAIN = {
     Outcome.PASS: "Converges as expected",
     Outcome.FAIL: "Does not converge as expected",
@@ -31,6 +35,8 @@ class Card:
     facts: tuple[tuple[str, str], ...]
     reason: str
     plain: str
+    stall: str
+    unseen: str
 
 
 def cards(record: Record) -> list[Card]:
@@ -62,9 +68,19 @@ def _card(record: Record, found: Finding) -> Card:
         ("Expected", words.expected(d)),
         ("Expectation from", (e.source if e else "") or "not given"),
     )
-    headline = DIVERGES.get(v.outcome, PLAIN[v.outcome]) if diverges else PLAIN[v.outcome]
-    plain = divergence(record, found) if diverges and v.outcome is Outcome.PASS else ""
-    return Card(str(v.outcome), title, headline, facts, _sentence(v.reason), plain)
+    falls = diverges and e is not None and e.stall is not None
+    headline = (STALLS if falls else DIVERGES if diverges else PLAIN)[v.outcome]
+    plain = divergence(record, found) if diverges and not falls and v.outcome is Outcome.PASS else ""
+    return Card(
+        str(v.outcome),
+        title,
+        headline,
+        facts,
+        _sentence(v.reason),
+        plain,
+        short(found),
+        audited.short(record, d.solution),
+    )
 
 
 def divergence(record: Record, found: Finding) -> str:

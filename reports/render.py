@@ -11,14 +11,23 @@ from matplotlib.figure import Figure
 
 from cases.store import Store, StoreError
 from cases.study import QUANTITIES, Run
-from reports import show, show_runs, style, tables, words
-from reports.blind_spots import blind_spots
+from reports import audited, show, show_axes, show_runs, style, tables, words
 from reports.cards import cards, summary
+from reports.cost import compares
 from reports.figures.convergence import convergence, methods
+from reports.figures.cost import cost_figure
 from reports.figures.error_field import CELLS, PPC, choose, error_field
 from reports.figures.local_orders import local_order_figure
+from reports.figures.particles import particles
+from reports.figures.position import position
+from reports.figures.time_step import time_step
+from reports.show_cost import figure_rows, overview
+from reports.stalls import looked, stalls
 from reports.stored import Record, read
 
+TIME = "Error of u in rms against the Courant number on the finest cells, both axes logarithmic; numbers in the table."
+PLACE = "Error of u in rms over the median of its level, with the particles at several places; numbers in the tables."
+COUNT = "error of u in rms against the particles per cell, a line a cell size; numbers in the table."
 TEMPLATES = Path(__file__).resolve().parent / "templates"
 
 
@@ -71,6 +80,11 @@ def _page(record: Record, folder: Path, field: tuple[int, int]) -> str:
         sections=[_solution(record, solution, folder, field) for solution in record.solutions],
         show=show,
         show_runs=show_runs,
+        show_axes=show_axes,
+        stalls=stalls(record),
+        cost=_cost(record, folder),
+        overview=overview,
+        looked=looked(record),
         quantities=QUANTITIES,
         words=words,
     )
@@ -84,7 +98,13 @@ def _solution(record: Record, solution: str, folder: Path, field: tuple[int, int
     add("figure1", drawn["figure1"], "")
     chosen = [choose(record, method, solution, *field) for method in methods(record)]
     fields = [_field(record, run, add) for run in chosen if run]
-    return {
+    several = particles(record, solution)
+    images = {
+        "time": _maybe(add, "time_step", time_step(record, solution), TIME),
+        "position": _maybe(add, "position", position(record, solution), PLACE),
+        "particles": [add(f"particles_{m}", drawn, f"{words.method(m)}: {COUNT}") for m, drawn in several.items()],
+    }
+    return images | {
         "name": solution,
         "panels": [
             add(f"figure1_{norm}", drawn[f"figure1_{norm}"], _alt(record, solution, norm))
@@ -96,8 +116,22 @@ def _solution(record: Record, solution: str, folder: Path, field: tuple[int, int
             "Local orders of u in rms; the table below holds the numbers.",
         ),
         "fields": [image for image in fields if image],
-        "blind": blind_spots(solution),
+        "blind": audited.blind(record, solution),
+        "seen": audited.seen(record, solution),
     }
+
+
+def _cost(record: Record, folder: Path) -> Image | None:
+    """Error against cost, where there are methods enough to compare."""
+    if not compares(record):
+        return None
+    drawn = cost_figure(record, figure_rows(record))
+    return _adder(folder, "")("cost", drawn, "Error of u, as a share of the exact rms, against updates and time.")
+
+
+def _maybe(add: Callable[[str, Figure, str], Image], name: str, figure: Figure | None, alt: str) -> Image | None:
+    """An Image where there is a figure."""
+    return add(name, figure, alt) if figure else None
 
 
 def _adder(folder: Path, end: str) -> Callable[[str, Figure, str], Image]:
@@ -114,7 +148,7 @@ def _adder(folder: Path, end: str) -> Callable[[str, Figure, str], Image]:
 def _field(record: Record, run: Run, add: Callable[[str, Figure, str], Image]) -> Image | None:
     """The error field of one run; None where its particles are not stored."""
     arrays = record.arrays(run)
-    if not {"x", "F", "r0", "error_u"} <= arrays.keys():
+    if not ({"corners"} <= arrays.keys() or {"x", "F", "r0"} <= arrays.keys()) or "error_u" not in arrays:
         return None
     most = words.sci(float(arrays["error_u"].max()))
     grid = f"{run.cells} by {run.cells} cells"

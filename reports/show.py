@@ -2,14 +2,15 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import chain, pairwise
 
 from cases.order import Outcome
+from cases.series import Series
 from cases.study import NORMS, QUANTITIES, Declared, Run
 from cases.verdicts import Finding
 from reports import tables, words
 from reports.figures.local_orders import orders
-from reports.stored import Record, Series
+from reports.stored import Record
 
 NAMES = {"u": "displacement u", "v": "velocity v", "F": "deformation gradient F", "sigma": "Cauchy stress"}
 Row = tuple[str, ...]
@@ -46,9 +47,15 @@ def judged_orders(record: Record) -> Table:
     )
 
 
+def shown_displacements(record: Record) -> Table:
+    """Local orders of u in rms where they are not judged."""
+    keys = [(s, "u", "rms") for s in record.series if ("u", "rms") in _keys(record, s, "shown")]
+    return _orders(record, "Shown only: order of u between neighbouring cell sizes", keys)
+
+
 def shown_orders(record: Record) -> Table:
-    """Local orders of what is only shown: every quantity in rms, and u as printed."""
-    wanted = {(q, "rms") for q in QUANTITIES} | {("u", "printed")}
+    """Local orders of what else is only shown: the other quantities in rms, and u as printed."""
+    wanted = {(q, "rms") for q in QUANTITIES if q != "u"} | {("u", "printed")}
     keys = [(s, *k) for k in sorted(wanted, key=_place) for s in record.series if k in _keys(record, s, "shown")]
     return _orders(record, "Shown only: order between neighbouring cell sizes", keys)
 
@@ -62,7 +69,7 @@ def contamination(record: Record) -> Table:
         if shares is not None:
             name = f"{words.quantity(d.quantity)}, {d.norm}"
             share = (words.percent(s) for s in (shares.lower, shares.floor, shares.most))
-            rows.append((_name(record, d), name, "judged" if d.judged else "shown only", *share))
+            rows.append((named(record, d), name, "judged" if d.judged else "shown only", *share))
     head = ("series", "quantity", "role", "lower order", "floor", "at most")
     return Table("Shares of the finest error that are not of the expected order", head, tuple(rows), heads=3)
 
@@ -91,7 +98,7 @@ def _cells(record: Record) -> list[int]:
     return sorted({run.cells for s in record.series for run in s.runs})
 
 
-def _name(record: Record, of: Run | Declared) -> str:
+def named(record: Record, of: Run | Declared) -> str:
     """The series, with its solution where the study has more than one."""
     return words.series(of) + (f", {of.solution}" if len(record.solutions) > 1 else "")
 
@@ -100,34 +107,36 @@ def _errors(record: Record, caption: str, keys: Iterable[tuple[Series, str, str]
     """A column a cell size."""
     cells, rows = _cells(record), []
     for s, quantity, norm in keys:
-        at = {run.cells: _error(record, run, quantity, norm) for run in s.runs}
+        means = dict(record.errors(s, quantity, norm))
+        at = {run.cells: words.sci(means[run]) if run in means else _without(record, s, run) for run in s.runs}
         rows.append(
-            (_name(record, s.first), f"{words.quantity(quantity)}, {norm}", *(at.get(n, words.DASH) for n in cells))
+            (named(record, s.first), f"{words.quantity(quantity)}, {norm}", *(at.get(n, words.DASH) for n in cells))
         )
     return Table(caption, ("series", "error of, in", *(words.cell_size(n) for n in cells)), tuple(rows), heads=2)
 
 
-def _error(record: Record, run: Run, quantity: str, norm: str) -> str:
-    """The error, or why there is none."""
-    result = record.result(run)
-    if result is None:
-        return "not run"
-    return "failed" if result.status == "failed" else words.sci(record.error(run, quantity, norm))
+def _without(record: Record, series: Series, run: Run) -> str:
+    """Why a level has no error."""
+    return "failed" if run in record.failed(series) else "not run"
 
 
 def _orders(record: Record, caption: str, keys: Iterable[tuple[Series, str, str]]) -> Table:
-    """A column a pair of cell sizes, then the fitted order of the declared quantity."""
+    """A column a pair of cell sizes, the crossings per particle of the finer one beside it, then the fitted order."""
     cells, rows = _cells(record), []
+    passed = tables.crossings(record)
     fitted = {tables.key(f.declared): words.order(f.verdict.observed) for f in record.findings}
     columns = list(pairwise(cells))
     for s, quantity, norm in keys:
         found = {(a, b): words.order(p) for a, b, p in orders(record, s, quantity, norm)}
         first = s.first
         fit = fitted.get((first.method, first.solution, first.ppc, quantity, norm), words.DASH)
-        steps = (found.get(pair, words.DASH) for pair in columns)
-        rows.append((_name(record, s.first), f"{words.quantity(quantity)}, {norm}", *steps, fit))
-    pairs = (f"{words.cell_size(a)} → {words.cell_size(b)}" for a, b in columns)
-    return Table(caption, ("series", "order of, in", *pairs, "fitted"), tuple(rows), heads=2)
+        steps = [
+            (found.get((a, b), words.DASH), words.few(passed.get((first.method, first.solution, first.ppc, b))))
+            for a, b in columns
+        ]
+        rows.append((named(record, first), f"{words.quantity(quantity)}, {norm}", *chain(*steps), fit))
+    pairs = [(f"{words.cell_size(a)} → {words.cell_size(b)}", "crossings") for a, b in columns]
+    return Table(caption, ("series", "order of, in", *chain(*pairs), "fitted"), tuple(rows), heads=2)
 
 
 def _shown(record: Record, found: Finding) -> Row:
@@ -136,4 +145,4 @@ def _shown(record: Record, found: Finding) -> Row:
     if d.expectation and d.expectation.order is None and v.outcome is Outcome.PASS:
         says += " (diverges, as expected)"
     name = f"{words.quantity(d.quantity)}, {d.norm}"
-    return _name(record, d), name, words.order(v.observed), words.interval(v.interval), words.expected(d), says
+    return named(record, d), name, words.order(v.observed), words.interval(v.interval), words.expected(d), says

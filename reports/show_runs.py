@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import asdict
 
+from cases.axes import crossed
 from cases.study import Run
 from reports import words
 from reports.show import Row, Table
@@ -11,7 +12,10 @@ from reports.stored import Record
 
 def runs(record: Record) -> Table:
     """Every run: how it ended."""
-    head = ("method", "cells", "per cell", "status", "Courant", "steps", "particles", "wall time", "memory", "reason")
+    head = (
+        *("method", "cells", "per cell", "status", "Courant", "shift", "steps", "particles", "crossings", "gap"),
+        *("wall time", "memory", "reason"),
+    )
     rows = tuple(_run(record, run) for run in record.study.runs)
     texts = ("status", "reason", "solution")
     return Table("All runs of the study", _with_solution(record, head), rows, heads=3, texts=texts)
@@ -71,11 +75,13 @@ def _with_solution(record: Record, row: Sequence[str], run: Run | None = None) -
 def _run(record: Record, run: Run) -> Row:
     """How one run ended."""
     head, result = (words.method(run.method), str(run.cells), str(run.ppc)), record.result(run)
+    point = (f"{run.courant:g}", words.shift(run))
     if result is None:
-        return _with_solution(record, (*head, "not run", f"{run.courant:g}", *(words.DASH,) * 4, "to be done"), run)
-    numbers = (f"{result.steps}", f"{result.particles}", f"{result.wall_s:.2f} s", f"{result.peak_memory_mb:.0f} MB")
+        return _with_solution(record, (*head, "not run", *point, *(words.DASH,) * 6, "to be done"), run)
+    numbers = (f"{result.steps}", f"{result.particles}", words.few(crossed(result)), words.few(result.gap))
+    costs = (f"{result.wall_s:.2f} s", f"{result.peak_memory_mb:.0f} MB")
     reason = words.prose(str(result.failure)) if result.failure else ""
-    return _with_solution(record, (*head, result.status, f"{run.courant:g}", *numbers, reason), run)
+    return _with_solution(record, (*head, result.status, *point, *numbers, *costs, reason), run)
 
 
 def _text(value: object) -> str:

@@ -5,21 +5,11 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
+from cases.axes import NOT_RUN, level, middle, replicated
+from cases.series import Series, collect
 from cases.store import Arrays, Store
-from cases.study import Declared, Result, Run, Study
-from cases.verdicts import Finding, findings, refinement
-
-
-@dataclass(frozen=True)
-class Series:
-    """The refinement of one method, solution and particle count at the Courant number of the study, coarse to fine."""
-
-    runs: tuple[Run, ...]
-
-    @property
-    def first(self) -> Run:
-        """The coarsest run; it names the method, solution and particle count of all."""
-        return self.runs[0]
+from cases.study import Result, Run, Study
+from cases.verdicts import Finding, findings
 
 
 @dataclass(frozen=True)
@@ -43,11 +33,7 @@ class Record:
     @cached_property
     def series(self) -> list[Series]:
         """One a method, solution and particle count; methods as declared by the study, fewest particles first."""
-        heads = {(r.method, r.solution, r.ppc) for r in self.study.runs}
-        places = {r.method: i for i, r in reversed(list(enumerate(self.study.runs)))}
-        ordered = sorted(heads, key=lambda head: (head[1], places[head[0]], head[2]))
-        shown = [Declared(*head, "u", "rms", judged=False, expectation=None) for head in ordered]
-        return [Series(tuple(refinement(d, self.study.runs))) for d in shown]
+        return collect(self.study.runs)
 
     @property
     def solutions(self) -> list[str]:
@@ -71,13 +57,19 @@ class Record:
         return result.errors.get(quantity, {}).get(norm)
 
     def errors(self, series: Series, quantity: str, norm: str) -> list[tuple[Run, float]]:
-        """The finished runs of a series with their error, coarse to fine."""
-        pairs = [(run, self.error(run, quantity, norm)) for run in series.runs]
-        return [(run, error) for run, error in pairs if error is not None]
+        """The finished levels of a series with their error, coarse to fine; of replicates the mean, as is judged."""
+        levels = zip(series.runs, replicated(series, self.results, quantity, norm), strict=True)
+        return [(run, middle(errors)) for run, errors in levels if errors]
 
     def failed(self, series: Series) -> list[Run]:
-        """The failed runs of a series, coarse to fine."""
-        return [run for run in series.runs if (r := self.result(run)) and r.status == "failed"]
+        """The levels of a series that failed, coarse to fine."""
+        levels = [(runs[0], level(runs, self.results, "u", "rms")) for runs in series.replicates]
+        return [run for run, (errors, why) in levels if not errors and NOT_RUN not in why]
+
+    @property
+    def replicates(self) -> int:
+        """The most runs that one level has."""
+        return max((len(runs) for series in self.series for runs in series.replicates), default=1)
 
     def arrays(self, run: Run) -> Arrays:
         """The particles of a stored run at its last step. Raises StoreError if they cannot be read."""

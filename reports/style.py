@@ -1,8 +1,7 @@
 """Looks of the figures, and files that are the same bytes each time they are written.
 
-Colour tells the method, marker and line tell the particle count, a filled or open marker tells the method again: no
-statement hangs on colour alone. Colours: Okabe & Ito (2008), "Color Universal Design". Type is large enough that a
-panel can be shown 340 px wide.
+Colour and marker tell the method, line and filling the particle count: no statement hangs on colour alone. Colours:
+Okabe & Ito (2008), "Color Universal Design". Type is large enough that a panel can be shown 340 px wide.
 """
 
 import io
@@ -11,11 +10,20 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from matplotlib import rc_context
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import LogLocator, NullLocator
 
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
-MARKERS = {1: ("o", ":"), 4: ("s", "--"), 9: ("^", "-"), 16: ("D", "-.")}
+from reports import words
+
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#000000", "#56B4E9", "#8C564B")
+MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<")
+LINES: dict[int, tuple[Any, bool]] = {1: (":", False), 4: ("--", False), 9: ("-", True), 16: ("-.", True)}
+OTHER: tuple[Any, bool] = ((0, (4, 1, 1, 1, 1, 1)), False)  # of any other particle count: line, and whether filled
+SEVERAL = 6  # series; with more, a legend names methods and particle counts apart
 INK, GREY, LIGHT = "#1b1f24", "#5b6570", "#d8dde2"
 RC: dict[Any, Any] = {  # matplotlib types the keys as literals
     "font.family": "DejaVu Sans",  # ships with matplotlib: the same letters on every machine
@@ -54,7 +62,7 @@ class Look:
 
     colour: str
     marker: str
-    line: str
+    line: Any
     filled: bool
 
     @property
@@ -73,8 +81,37 @@ class Look:
 def look(methods: Sequence[str], method: str, ppc: int) -> Look:
     """The look of a series; `methods` are those of the study, in its order."""
     place = list(methods).index(method)
-    marker, line = MARKERS.get(ppc, ("v", "-"))
-    return Look(COLOURS[place % len(COLOURS)], marker, line, place % 2 == 0)
+    line, filled = LINES.get(ppc, OTHER)
+    return Look(COLOURS[place % len(COLOURS)], MARKERS[place % len(MARKERS)], line, filled)
+
+
+def legend(figure: Figure, methods: Sequence[str], series: Sequence[tuple[str, int]], columns: int = 2) -> None:
+    """Below the panels, so that it never covers a point: each series, or, of many, each method and particle count."""
+    if len(series) <= SEVERAL:
+        handles = [
+            Line2D([], [], label=f"{words.method(m)}, {ppc} per cell", **look(methods, m, ppc).plot)
+            for m, ppc in series
+        ]
+    else:
+        named = [m for m in methods if m in {method for method, _ in series}]
+        handles = [Line2D([], [], label=words.method(m), **look(methods, m, 9).plot) for m in named]
+        for ppc in sorted({ppc for _, ppc in series}):
+            line, filled = LINES.get(ppc, OTHER)
+            drawn = Look(GREY, "o", line, filled)
+            handles.append(Line2D([], [], label=f"{ppc} per cell", **drawn.plot))
+        columns = max(columns, 3)
+    tight = {"fontsize": 10.0, "handlelength": 2.0, "columnspacing": 0.9} if len(series) > SEVERAL else {}
+    usual = {"handlelength": 2.6, "columnspacing": 1.4}
+    figure.legend(handles=handles, loc="outside lower center", ncols=columns, **{**usual, **tight})
+
+
+def error_axis(axes: Axes) -> None:
+    """Ticks of a logarithmic axis of errors, also where it spans less than a decade."""
+    low, high = axes.get_ylim()
+    parts = (1.0,) if high / low > 30 else (1.0, 2.0, 5.0) if high / low > 2 else tuple(np.arange(10, 100) / 10)
+    axes.yaxis.set_major_locator(LogLocator(subs=parts, numticks=8))
+    axes.yaxis.set_minor_locator(NullLocator())
+    axes.yaxis.set_major_formatter(number)
 
 
 def number(value: float, _: object = None) -> str:

@@ -1,12 +1,15 @@
 """Stored results as pandas data frames, full digits, one row a fact: what the CSV files hold and the page shows."""
 
 from dataclasses import asdict
+from itertools import product
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
+from cases.axes import crossed, particle_axes, position_axes, time_axes
 from cases.study import NORMS, QUANTITIES, Declared
+from reports.cost import compares, costs
 from reports.figures.local_orders import orders as pairs
 from reports.stored import Record
 
@@ -21,15 +24,20 @@ def write(record: Record, folder: Path) -> None:
 
 
 def frames(record: Record) -> dict[str, pd.DataFrame]:
-    """All tables by name."""
+    """All tables by name; one without rows is none."""
     made = {
         "verdicts": verdicts(record),
         "errors": errors(record),
         "orders": orders(record),
         "contamination": contamination(record),
+        "stalls": stalls(record),
+        "time_step": time_step(record),
+        "particles_per_cell": particles_per_cell(record),
+        "position": position(record),
         "runs": runs(record),
+        **({"cost": costs(record)} if compares(record) else {}),
     }
-    return {name: pd.DataFrame(rows) for name, rows in made.items()}
+    return {name: pd.DataFrame(rows) for name, rows in made.items() if rows}
 
 
 def roles(record: Record) -> dict[tuple[Any, ...], str]:
@@ -62,13 +70,14 @@ def errors(record: Record) -> Rows:
             norms = {norm: record.error(run, quantity, norm) for norm in NORMS}
             head = {"method": run.method, "solution": run.solution, "ppc": run.ppc, "cells": run.cells}
             exact = result.scale.get(quantity) if result else None
-            rows.append(head | {"courant": run.courant, "quantity": quantity} | norms | {"exact_rms": exact})
+            where = {"offset_x": run.offset[0], "offset_y": run.offset[1]}
+            rows.append(head | {"courant": run.courant} | where | {"quantity": quantity} | norms | {"exact_rms": exact})
     return rows
 
 
 def orders(record: Record) -> Rows:
     """A row a pair of neighbouring cell sizes, for every series, quantity and norm."""
-    rows, role = [], roles(record)
+    rows, role, passed = [], roles(record), crossings(record)
     for s in record.series:
         for quantity in QUANTITIES:
             for norm in NORMS:
@@ -76,7 +85,9 @@ def orders(record: Record) -> Rows:
                 for coarse, fine, order in pairs(record, s, quantity, norm):
                     row: dict[str, Any] = dict(zip(KEY, name, strict=True))
                     rows.append(
-                        row | {"role": role.get(name, "shown"), "from_cells": coarse, "to_cells": fine, "order": order}
+                        row
+                        | {"role": role.get(name, "shown"), "from_cells": coarse, "to_cells": fine, "order": order}
+                        | {"crossings_per_particle": passed.get((*name[:3], fine))}
                     )
     return rows
 
@@ -98,10 +109,12 @@ def runs(record: Record) -> Rows:
     rows = []
     for run in record.study.runs:
         row: dict[str, Any] = asdict(run) | {"status": "not run"}
+        row["offset_x"], row["offset_y"] = row.pop("offset")
         result = record.result(run)
         if result is not None:
             row |= {"status": result.status, "steps": result.steps, "particles": result.particles, "dt": result.dt}
-            row |= {"wall_s": result.wall_s, "peak_memory_mb": result.peak_memory_mb}
+            row |= {"wall_s": result.wall_s, "cpu_s": result.cpu_s, "peak_memory_mb": result.peak_memory_mb}
+            row |= {"crossings": result.crossings, "gap": result.gap}
             row |= {"digest": result.digest}
             failure = result.failure
             if failure is not None:
@@ -109,6 +122,59 @@ def runs(record: Record) -> Rows:
                 row |= {"failed_cell": " ".join(map(str, failure.cell)) if failure.cell else None}
         rows.append(row)
     return rows
+
+
+def stalls(record: Record) -> Rows:
+    """A row a stall and cause, the weightiest first."""
+    rows = []
+    for found in record.findings:
+        for cause in found.stall.causes if found.stall else ():
+            row: dict[str, Any] = dict(zip(KEY, key(found.declared), strict=True))
+            row |= {"where": found.stall.where if found.stall else None, "cause": cause.name}
+            rows.append(row | {"finding": str(cause.finding), "weight": cause.weight, "measured": cause.text})
+    return rows
+
+
+def time_step(record: Record) -> Rows:
+    """A row a time step of each series that has several, for every quantity and norm; the largest first."""
+    rows = []
+    for quantity, norm in product(QUANTITIES, NORMS):
+        for a in time_axes(record.study.runs, record.results, quantity, norm):
+            head = {"method": a.run.method, "solution": a.run.solution, "ppc": a.run.ppc, "cells": a.run.cells}
+            for courant, error, order, share in zip(a.courants, a.errors, (None, *a.orders), a.shares, strict=True):
+                row = head | {"quantity": quantity, "norm": norm, "courant": courant, "error": error}
+                rows.append(row | {"order": order, "share_of_time_step": share})
+    return rows
+
+
+def particles_per_cell(record: Record) -> Rows:
+    """A row a particle count of each method and cell size that has several, for every quantity and norm."""
+    rows = []
+    for quantity, norm in product(QUANTITIES, NORMS):
+        for a in particle_axes(record.study.runs, record.results, quantity, norm):
+            head = {"method": a.run.method, "solution": a.run.solution, "cells": a.run.cells}
+            for count, error, order in zip(a.ppc, a.errors, (None, *a.orders), strict=True):
+                row = head | {"quantity": quantity, "norm": norm, "ppc": count, "error": error}
+                rows.append(row | {"order_in_spacing": order})
+    return rows
+
+
+def position(record: Record) -> Rows:
+    """A row a cell size of each series with replicates, for every quantity and norm."""
+    rows = []
+    for quantity, norm in product(QUANTITIES, NORMS):
+        for a in position_axes(record.study.runs, record.results, quantity, norm):
+            head = {"method": a.run.method, "solution": a.run.solution, "ppc": a.run.ppc}
+            for cells, errors, (low, mid, high) in zip(a.cells, a.errors, a.ends, strict=True):
+                row = head | {"quantity": quantity, "norm": norm, "cells": cells, "runs": len(errors)}
+                rows.append(row | {"usual": errors[0], "smallest": low, "median": mid, "largest": high})
+    return rows
+
+
+def crossings(record: Record) -> dict[tuple[Any, ...], float]:
+    """Faces of cells that a particle passed, by (method, solution, ppc, cells)."""
+    every = [(run, crossed(record.result(run))) for series in record.series for run in series.runs]
+    return {(run.method, run.solution, run.ppc, run.cells): passed for run, passed in every if passed is not None}
 
 
 def key(d: Declared) -> tuple[Any, ...]:

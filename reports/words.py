@@ -1,10 +1,19 @@
 """How names, numbers and outcomes are written: one place, so that every table, figure and sentence says it alike."""
 
 import math
+import re
 
 from cases.study import Declared, Run
 
-METHODS = {"mpm": "MPM", "cpdi": "CPDI", "cpdi2": "CPDI2", "gimp": "GIMP"}
+METHODS = {
+    "mpm": "MPM",
+    "gimp": "GIMP",
+    "cpgimp": "cpGIMP",
+    "cpdi": "CPDI",
+    "cpdi2": "CPDI2",
+    "bspline2": "quadratic B-spline",
+    "bspline3": "cubic B-spline",
+}
 QUANTITIES = {"u": "u", "v": "v", "F": "F", "sigma": "\N{GREEK SMALL LETTER SIGMA}"}
 MEANING = {
     "PASS": "the evidence shows what was registered",
@@ -44,7 +53,7 @@ def order(value: float | None) -> str:
     """Two decimals with a true minus sign; a dash for nothing."""
     if value is None or math.isnan(value):
         return DASH
-    return "∞" if math.isinf(value) else f"{value:.2f}".replace("-", MINUS)
+    return "∞" if math.isinf(value) else f"{value:.2f}".replace("-0.00", "0.00").replace("-", MINUS)
 
 
 def percent(share: float) -> str:
@@ -55,6 +64,18 @@ def percent(share: float) -> str:
 def interval(ends: tuple[float, float] | None) -> str:
     """`1.98 to 2.03`; a dash where two levels or fewer leave none."""
     return DASH if ends is None else f"{order(ends[0])} to {order(ends[1])}"
+
+
+def few(value: float | None) -> str:
+    """One decimal of a count, 16.3, two digits below one, 0.012; a dash for nothing."""
+    if value is None or math.isnan(value):
+        return DASH
+    return f"{value:.1f}" if value >= 1 else f"{value:.2g}"
+
+
+def shift(run: Run) -> str:
+    """Where the particles of a replicate lie, in shares of their spacing; a dash at their usual places."""
+    return DASH if not any(run.offset) else ", ".join(order(share) for share in run.offset)
 
 
 def cell_size(cells: int) -> str:
@@ -68,13 +89,14 @@ def expected(declared: Declared) -> str:
     if e is None:
         return DASH
     if e.order is None:
-        return "diverges"
+        return e.kind
     return f"{order(e.order)} ({order(e.order - e.below)} to {order(e.order + e.above)})"
 
 
 def prose(reason: str) -> str:
-    """A reason for a reader: `det F ≤ 0` for `det F <= 0`."""
-    return reason.replace("<=", "≤").replace(">=", "≥")
+    """A reason for a reader: `det F ≤ 0` for `det F <= 0`, true minus signs, and a space before %."""
+    text = reason.replace("<=", "≤").replace(">=", "≥")
+    return re.sub(r"(?<=\d)%", " %", re.sub(r"(?<=[ (+])-(?=\d)", MINUS, text))
 
 
 def count(number: int, noun: str) -> str:

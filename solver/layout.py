@@ -14,19 +14,30 @@ SIDES = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])  # of the
 
 @dataclass(frozen=True)
 class Layout:
-    """Reference places X (P,2), volumes V0 (P,), half side vectors r0 (P,2,2) one a row, corners (P,4,2).
+    """Reference places X (P,2), volumes V0 (P,), half side vectors r0 (P,2,2) one a row.
 
-    V0 is the area of the parallelogram of r0, and of the piece of the body that the particle stands for. Corners are
-    those of neighbours too, counter-clockwise; where the body is round they are not those of the parallelogram.
+    V0 is the area of the parallelogram of r0, and of the piece of the body that the particle stands for. `bent` (P,4,2)
+    has the corners of that piece where it is not the parallelogram.
     """
 
     X: Floats
     V0: Floats
     r0: Floats
-    corners: Floats
+    bent: Floats | None = None
 
     def __len__(self) -> int:
         return len(self.X)
+
+    @property
+    def corners(self) -> Floats:
+        """Corners (P,4,2) of the pieces, counter-clockwise; neighbours share them."""
+        return parallelograms(self.X, self.r0) if self.bent is None else self.bent
+
+
+def parallelograms(centre: Floats, r: Floats) -> Floats:
+    """Corners (P,4,2) of the parallelograms with half side vectors r (P,2,2), one a row."""
+    corners: Floats = centre[:, None, :] + np.einsum("cs,psa->pca", SIDES, r)
+    return corners
 
 
 def per_side(ppc: int) -> int:
@@ -52,7 +63,7 @@ def faces(first: float, last: float, step: float, offset: float) -> Floats:
     if not -0.5 < offset < 0.5:
         raise ValueError(f"an offset of {offset} spacings must lie between -0.5 and 0.5")
     count = int(np.rint((last - first) / step))
-    places: Floats = first + step * (np.arange(count + 1) + offset)
+    places: Floats = first + step * (np.arange(count + 1, dtype=np.float64) + offset)
     places[0], places[-1] = first, last
     return places
 
@@ -62,7 +73,7 @@ def graded(edges: list[Floats]) -> Layout:
     centre = np.stack(np.meshgrid(*[(e[1:] + e[:-1]) / 2 for e in edges], indexing="ij"), axis=-1).reshape(-1, 2)
     half = np.stack(np.meshgrid(*[np.diff(e) / 2 for e in edges], indexing="ij"), axis=-1).reshape(-1, 2)
     r0 = half[:, :, None] * np.eye(2)
-    return Layout(centre, 4.0 * half.prod(axis=1), r0, centre[:, None, :] + SIDES * half[:, None, :])
+    return Layout(centre, 4.0 * half.prod(axis=1), r0)
 
 
 def annulus(inner: float, outer: float, dx: float, ppc: int) -> Layout:

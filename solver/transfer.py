@@ -172,8 +172,8 @@ def g2p_chunk(fill, K, W, start, end, x, v, F, domain, origin, inv_dx, nx, ny, m
         gather(K, lo, hi, x, v, F, motion, dt, flip, table, node)
         cells_of(xs[2 * lo : 2 * hi], origin[0], origin[1], inv_dx, after)
         passed = 0
-        for b in range(2 * BLOCK):
-            passed += int(before[b] != after[b])
+        for b in range(hi - lo):  # beyond, in the last block, are the cells of the block before
+            passed += int(before[b] != after[b]) + int(before[BLOCK + b] != after[BLOCK + b])
         crossed[0] += passed
         if lost < 0 and not invertible(Fs[4 * lo : 4 * hi]):
             lost = lo

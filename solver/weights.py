@@ -49,7 +49,12 @@ class Basis:
     @classmethod
     def populate(cls, layout: Layout, rho0: float, place: Place = lambda X: X) -> Particles:
         """Particles at the places of the layout, and their domains where `place` takes them."""
-        return Particles(layout.X.copy(), rho0 * layout.V0, layout.V0.copy(), cls.domain(layout, place))
+        return Particles(layout.X, rho0 * layout.V0, layout.V0, cls.domain(layout, place))
+
+    @staticmethod
+    def corners(x: Floats, F: Floats, domain: Floats) -> Floats | None:
+        """Corners (P,4,2) of particles with these arrays, in the order of solver.layout.SIDES; None for points."""
+        return None
 
     @staticmethod
     def convect(particles: Particles, grid: Grid, dt: float) -> None:

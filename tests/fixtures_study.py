@@ -10,6 +10,7 @@ from cases import study as contract
 from cases.order import Expectation
 from cases.store import Arrays, Store
 from cases.study import NORMS, QUANTITIES, Declared, Failure, Result, Run, Study
+from mms.spots import ALWAYS, Spot
 
 CELLS = (8, 16, 32, 64, 128)
 U_RMS: dict[tuple[str, int], tuple[float, ...]] = {  # the runs behind the last number failed
@@ -22,6 +23,12 @@ U_RMS: dict[tuple[str, int], tuple[float, ...]] = {  # the runs behind the last 
 }
 SIZE = {"u": 1.0, "v": 320.0, "F": 11.0, "sigma": 9.0e4}  # errors of the others, in errors of u
 SCALE = {"u": 0.025, "v": 7.9, "F": 1.02, "sigma": 1700.0}
+AUDIT = (
+    Spot("shear", "F is diagonal everywhere. Seen by clamped_shear.", True),
+    Spot("volume", "det F runs from 0.5 to 1.7.", False),
+    *ALWAYS,
+)
+GAP: dict[str, float | None] = {"cpdi": 0.1, "mpm": None}  # at 8 cells
 SECOND = Expectation(2.0, 0.2, 0.3, source="Sadeghirad et al. 2011", constant=1.127e-5, constant_h=1 / 128)
 NONE = Expectation(None, source="Steffen, Kirby & Berzins 2008")
 ENVIRONMENT = {
@@ -86,6 +93,8 @@ def _result(run: Run) -> Result:
         errors=errors,
         steps=failure.step if failure else steps,
         particles=particles,
+        crossings=round(particles * run.cells / 4 * (failure.step / steps if failure else 1)),
+        gap=GAP[run.method] and GAP[run.method] * 8 / run.cells,
         dt=run.courant / run.cells / 100,
         wall_s=1e-6 * particles * steps,
         peak_memory_mb=90 + 4e-4 * particles,
@@ -93,6 +102,7 @@ def _result(run: Run) -> Result:
         floor=dict.fromkeys(QUANTITIES, 1e-14),
         failure=failure,
         environment=ENVIRONMENT,
+        audit=AUDIT,
     )
 
 

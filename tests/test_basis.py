@@ -42,15 +42,13 @@ def fill(name: str, x: Floats, F: Floats, r0: Floats, box: Any = (0.0, NX - 1.0,
 
 def bodies(x: Floats, F: Floats, r0: Floats) -> tuple[Layout, Any]:
     """A layout with domains r0 around x, and the map that deforms each by its F."""
-    corners = x[:, None] + np.einsum("cs,psa->pca", SIDES, r0)
-    volume = 4 * np.linalg.det(r0)
 
     def place(places: Floats) -> Floats:
         with np.errstate(invalid="ignore"):  # of places that are not finite
             apart = places.reshape(len(x), -1, 2) - x[:, None]
             return (x[:, None] + np.einsum("pab,pcb->pca", F, apart)).reshape(-1, 2)
 
-    return Layout(x, volume, r0, corners), place
+    return Layout(x, 4 * np.linalg.det(r0), r0), place
 
 
 def particles(rng: np.random.Generator, kind: str, n: int = BLOCK) -> tuple[Floats, Floats, Floats]:

@@ -84,7 +84,7 @@ def look(browser: webdriver.Chrome, page: Path, width: int) -> dict[str, Any]:
 @pytest.mark.parametrize("width", WIDTHS)
 def test_whole_study(browser: webdriver.Chrome, page: Path, width: int) -> None:
     assert look(browser, page, width) == {}
-    assert browser.execute_script("return document.images.length") == 5
+    assert browser.execute_script("return document.images.length") == 7
 
 
 @pytest.mark.parametrize("width", WIDTHS)

@@ -19,7 +19,7 @@ from cases.library import mms
 from cases.store import Store
 from cases.study import NORMS, QUANTITIES, Result
 from solver.plugins import available
-from verify.main import main
+from verify.main import app, main
 
 METHODS, SOLUTIONS, MATERIALS = (available(p) for p in ("solver.basis", "mms.solutions", "solver.material"))
 VERIFY = [sys.executable, "-m", "verify.main"]
@@ -108,10 +108,22 @@ BAD = {
     "courant negative": (["--courant", "-0.4"], ["courant", "0.001 to 10", "0.4"]),
     "courant nan": (["--courant", "nan"], ["courant", "0.001 to 10", "0.4"]),
     "courant infinite": (["--courant", "inf"], ["courant", "0.001 to 10"]),
+    "second courant 0": (["--courant", "0.4,0"], ["courant = 0.0", "0.001 to 10"]),
+    "second courant above the first": (["--courant", "0.4,0.8"], ["courant = 0.8", "above the first", "0.4,0.2,0.1"]),
+    "courant empty": (["--courant", ""], ["--courant ''", "0.4,0.2,0.1"]),
+    "courant with a comma too many": (["--courant", "0.4,"], ["--courant '0.4,'", "0.4,0.2,0.1"]),
+    "replicates 0": (["--replicates", "0"], ["replicates = 0", NUMBERS, "from 1 to 64"]),
+    "replicates 65": (["--replicates", "65"], ["replicates = 65", NUMBERS, "from 1 to 64"]),
+    "replicates no number": (["--replicates", "some"], ["--replicates", "integer"]),
     "courant no number": (["--courant", "fast"], ["--courant", "number"]),
-    "flip 2": (["--flip", "2"], ["flip", "between 0", "1"]),
-    "flip negative": (["--flip", "-0.1"], ["flip", "between 0", "1"]),
-    "flip nan": (["--flip", "nan"], ["flip", "between 0", "1"]),
+    "unknown transfer": (["--transfer", "nope"], ["'nope'", "apic, flip, fmpm, pic"]),
+    "share of flip 2": (["--transfer", "flip:share=2"], ["share = 2", "above 0", "up to 1"]),
+    "share of flip 0": (["--transfer", "flip:share=0"], ["share = 0", "pic"]),
+    "share of flip nan": (["--transfer", "flip:share=nan"], ["share=nan", "finite number"]),
+    "order of fmpm 0": (["--transfer", "fmpm:order=0"], ["order = 0", "whole number from 1"]),
+    "order of fmpm 2.5": (["--transfer", "fmpm:order=2.5"], ["order = 2.5", "whole number from 1"]),
+    "unknown parameter of a transfer": (["--transfer", "pic:share=1"], ["'share'", "none"]),
+    "unknown stress order": (["--stress", "first"], ["'first'", "usl, musl, usf"]),
     "jobs 0": (["--jobs", "0"], ["--jobs", NUMBERS, "from 1"]),
     "jobs negative": (["--jobs", "-1"], ["--jobs", NUMBERS, "from 1"]),
     "jobs no number": (["--jobs", "all"], ["--jobs", "integer"]),
@@ -255,7 +267,7 @@ def test_list_names_every_plugin(verify: Verify) -> None:
     said = verify("list")
     assert (said.code, said.err) == (0, "")
     listed = {line.split()[0] for line in said.out.splitlines() if line.startswith("  ")}
-    assert listed == {*METHODS, *SOLUTIONS, *MATERIALS, *available("cases.library")}
+    assert listed == {*METHODS, *SOLUTIONS, *MATERIALS, *available("cases.library"), *available("solver.transfers")}
     assert all(len(line.split()) > 2 for line in said.out.splitlines() if line.startswith("  "))  # and says what it is
 
 
@@ -275,14 +287,16 @@ def test_table(verify: Verify, quickly: None) -> None:
     said = verify("mms", "--method", "cpdi", "--method", "mpm", "--ppc", "4", "--out", "study")
     assert (said.code, said.err) == (0, "")
     rows = [line.split() for line in said.out.splitlines()]
-    assert ["cpdi", "4", "u", "rms", "8", "3.043e-03"] in rows
-    assert ["16", "7.122e-04", "2.10"] in rows
-    assert ["mpm", "4", "u", "rms", "8", "4.814e-03"] in rows
-    assert ["16", "6.724e-03", "-0.48"] in rows
+    assert ["cpdi", "4", "u", "rms", "8", "3.043e-03", "2.0"] in rows  # the last is of crossings, per particle
+    assert ["16", "7.122e-04", "2.10", "4.0"] in rows
+    assert ["mpm", "4", "u", "rms", "8", "4.814e-03", "2.0"] in rows
+    assert ["16", "6.724e-03", "-0.48", "4.0"] in rows
     assert any(row[:2] == ["128", "-"] and "det" in row for row in rows)  # the failed run by its reason
     text = " ".join(said.out.split())
     assert "PASS cpdi, 4 per cell, u in rms, order 2 expected: " in text
     assert "PASS mpm, 4 per cell, u in rms, no convergence expected: does not converge, as expected" in text
+    assert "STALL mpm, 4 per cell, u in rms: from 32 to 64 cells the order is -0.85; -0.48, -1.09 before" in text
+    assert "STALL cpdi" not in text
     assert said.out.splitlines()[-1] == f"report: {Path('study/report.html')}"
     assert "\x1b" not in said.out  # no colours where there is no terminal
 
@@ -365,7 +379,7 @@ def test_starts_light(arguments: list[str]) -> None:
         ("verify mms --material ", MATERIALS),
         ("verify mms --solution cl", ["clamped_shear"]),
         ("verify mms --method nope", []),
-        ("verify ", ["mms", "list", "report"]),
+        ("verify ", [str(command.name) for command in app.registered_commands]),
     ],
 )
 def test_completion(line: str, offered: list[str]) -> None:

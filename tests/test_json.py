@@ -55,7 +55,7 @@ def test_standard_output_is_one_valid_document(real: tuple[subprocess.CompletedP
     assert run.stderr == ""  # no progress bar either: standard error is no terminal here
     document = parse(run.stdout)
     validate(document)
-    assert document["version"] == VERSION == 1
+    assert document["version"] == VERSION == 2
     assert (folder / document["report"]).is_file()
     assert run.returncode == 3  # three levels are too few for CPDI
 
@@ -151,6 +151,9 @@ def test_expected_divergence_passes_in_words(told: Callable[..., Any]) -> None:
     assert exit_code == 0
     assert {(v["expected"], v["verdict"]) for v in document["verdicts"]} == {("diverges", "PASS")}
     assert all("does not converge, as expected" in v["reason"] for v in document["verdicts"])
+    for told_of, case in zip(document["verdicts"], suite.iter("testcase"), strict=True):
+        assert told_of["stall"]["named"] == ["cell crossings"]
+        assert told_of["stall"]["where"] in (case.findtext("system-out") or "")
     assert suite.get("failures") == "0"
 
 

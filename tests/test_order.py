@@ -417,6 +417,14 @@ def test_a_stall_is_neither_invented_nor_overlooked(scatter: float) -> None:
     assert outcomes["stalls"][PASS] >= 0.95 * DRAWS
 
 
+def test_a_stall_that_shows_on_finer_cells_only_is_no_surprise_on_coarse_ones() -> None:
+    later = replace(STALLS, stall_h=1 / 256)
+    got = verdict(CPDI_4, later)
+    assert (got.outcome, got.reason.endswith("run h=1/256")) == (INCONCLUSIVE, True)
+    assert verdict(CPDI_4, replace(STALLS, stall_h=1 / 128)).outcome is FAIL
+    assert verdict(GIMP_4, later).outcome is PASS  # earlier than seen, but seen
+
+
 def test_a_stall_beside_an_order_is_refused() -> None:
     with pytest.raises(ValueError, match="not both"):
         Expectation(2.0, stall=1.5)

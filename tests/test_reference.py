@@ -89,5 +89,5 @@ def test_half_the_time_step_changes_little() -> None:
 
 
 def test_pic_dissipates() -> None:
-    result, _ = execute(Run("cpdi", "axis_aligned", "neo_hookean", 16, 4, 0.4, flip=0.0))
+    result, _ = execute(Run("cpdi", "axis_aligned", "neo_hookean", 16, 4, 0.4, transfer="pic"))
     assert result.errors["u"]["rms"] > 3 * CPDI[4][1]

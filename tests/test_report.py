@@ -17,8 +17,9 @@ from cases import study as contract
 from cases.order import Expectation
 from cases.store import Store, StoreError
 from cases.study import Declared, Failure, Run
-from reports import words
-from reports.blind_spots import DIAGONAL, SMALL, STARTS_AT_REST, blind_spots
+from mms.spots import ALWAYS
+from reports import audited, words
+from reports.cards import cards
 from reports.figures.error_field import choose, domains
 from reports.render import render
 from reports.stored import read
@@ -81,7 +82,7 @@ def test_rendering_twice_gives_the_same_bytes(folder: Path) -> None:
 
 def test_page_is_self_contained(page: str) -> None:
     outline = Outline(page)
-    assert len(outline.images) == 5  # two panels, local orders, a field for each method
+    assert len(outline.images) == 7  # two panels, local orders, particles and a field for each method
     for image in outline.images:
         kind, _, data = (image["src"] or "").partition(",")
         assert kind == "data:image/svg+xml;base64"
@@ -208,7 +209,7 @@ def test_two_solutions_are_told_apart(tmp_path: Path) -> None:
             store.put(replace(result, run=new, digest=new.digest), store.arrays(old.digest))
     said = text(render(tmp_path).read_text())
     assert f"CPDI, 4 per cell: u in rms, {other}" in said
-    assert DIAGONAL in said
+    assert said.count("F is diagonal everywhere. Seen by clamped_shear.") == 2
     names = {file.stem for file in tmp_path.glob("figures/*.svg")}
     assert {"figure1_axis_aligned", "figure1_clamped_shear_G_0_05"} <= names
 
@@ -256,18 +257,23 @@ def test_field_is_of_the_run_asked_for_or_the_nearest_that_finished(folder: Path
     assert (other.cells, other.ppc) == (64, 9)
 
 
-@pytest.mark.parametrize(
-    ("solution", "seen", "unseen"),
-    [
-        ("axis_aligned", [], [DIAGONAL, STARTS_AT_REST]),
-        ("axis_aligned:A=0.0001,phase=0.5", [STARTS_AT_REST], [DIAGONAL, SMALL]),
-        ("clamped_shear", [DIAGONAL, STARTS_AT_REST, SMALL], []),
-    ],
-)
-def test_blind_spots_follow_the_solution_and_its_parameters(solution: str, seen: list[str], unseen: list[str]) -> None:
-    found = blind_spots(solution)
-    assert set(unseen) <= set(found)
-    assert not set(seen) & set(found)
+def test_what_the_auditor_said_stands_beside_each_verdict_and_at_the_end(tmp_path: Path) -> None:
+    record = read(fixtures.make(tmp_path, ("cpdi",)))
+    assert all(card.unseen == "F is diagonal everywhere." for card in cards(record))
+    assert [spot.key for spot in audited.blind(record, "axis_aligned")] == ["shear", "orders", "constants"]
+    assert [spot.key for spot in audited.seen(record, "axis_aligned")] == ["volume"]
+    page = text(render(tmp_path).read_text())
+    assert "Not seen here. F is diagonal everywhere." in page
+    assert "Seen by clamped_shear." in page
+    assert "det F runs from 0.5 to 1.7." in page
+
+
+def test_results_without_an_audit_say_what_always_holds(tmp_path: Path) -> None:
+    folder = fixtures.make(tmp_path, ("cpdi",))
+    record = read(folder)
+    bare = replace(record, results={key: replace(r, audit=()) for key, r in record.results.items()})
+    assert audited.spots(bare, "axis_aligned") == ALWAYS
+    assert {card.unseen for card in cards(bare)} == {""}
 
 
 @pytest.mark.parametrize(

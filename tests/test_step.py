@@ -14,6 +14,8 @@ from solver.material.neo_hookean import NeoHookean
 from solver.plugins import available, load
 from solver.state import Grid, Particles
 from solver.step import Model, RunFailed, Scheme, advance, check_time_step, grid_to_particles, particles_to_grid
+from solver.transfers.flip import Flip
+from solver.transfers.pic import Pic
 
 BASES = available("solver.basis")
 LAW = NeoHookean(E=1e3, nu=0.3, rho0=1.0)
@@ -39,7 +41,7 @@ def model(
     whole = basis.populate(rectangle(grid.lower, grid.upper, DX, 4), LAW.rho0)
     chosen = keep(whole.X) if keep else (np.abs(whole.X - 0.5) < 5 * DX).all(axis=1)
     body = select(whole, chosen)
-    return Model(grid, body, basis, law, box(grid, kind), dt, Scheme(flip))
+    return Model(grid, body, basis, law, box(grid, kind), dt, Scheme(Flip(flip) if flip else Pic()))
 
 
 def go(m: Model, count: int, load: Any = None) -> None:
@@ -281,10 +283,15 @@ def test_flip_and_pic(name: str) -> None:
     assert after[0.0].std() < 0.7 * before.std()
 
 
-@pytest.mark.parametrize("flip", [-0.1, 1.1, np.nan])
-def test_a_flip_that_is_no_share(flip: float) -> None:
-    with pytest.raises(ValueError, match="no share"):
-        Scheme(flip)
+@pytest.mark.parametrize("share", [-0.1, 0.0, 1.1, np.nan])
+def test_a_flip_that_is_no_share(share: float) -> None:
+    with pytest.raises(ValueError, match="above 0 and up to 1"):
+        Flip(share)
+
+
+def test_an_unknown_stress_order() -> None:
+    with pytest.raises(ValueError, match="choose from usl, musl, usf"):
+        Scheme(stress="last")
 
 
 def swing(name: str, turn: Any) -> Model:
@@ -443,7 +450,7 @@ def test_a_time_step_above_the_limit_is_a_failed_result() -> None:
     assert "stability limit" in result.failure.reason
     assert (result.failure.step, result.failure.particle, result.steps) == (0, -1, 0)
     assert result.errors == {}
-    assert set(arrays) == {"X", "x", "F", "r0", "error_u"}
+    assert set(arrays) == {"X", "x", "F", "corners", "error_u"}
 
 
 def test_force_runs_a_time_step_above_the_limit() -> None:

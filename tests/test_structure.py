@@ -16,6 +16,7 @@ FLOORS = ("solver", "mms", "cases", "reports", "verify")  # from the ground up
 PLUGINS = {
     "solver.basis": {"support", "order", "fill"},
     "solver.material": {"energy", "update", "wave_speed"},
+    "solver.transfers": {"share", "start", "give", "filter", "take"},
     "mms.solutions": {"displacement", "boundary", "lower", "upper", "duration"},
 }
 FILES = sorted(file for floor in FLOORS for file in (TOP / floor).rglob("*.py"))
@@ -106,7 +107,7 @@ def test_names_of_plugins() -> None:
     assert camel("neo_hookean") == "NeoHookean"
     assert {"mpm", "cpdi"} <= set(available("solver.basis"))
     assert not [name for package in PLUGINS for name in available(package) if name.startswith("_")]
-    with pytest.raises(ValueError, match="no method 'fem'; choose from cpdi, mpm"):
+    with pytest.raises(ValueError, match=r"no method 'fem'; choose from .*cpdi, .*mpm"):
         load("solver.basis", "fem")
 
 
@@ -134,7 +135,7 @@ def test_help_is_light(words: list[str]) -> None:
     if words[0] == "list":
         assert all(name in done.stdout for _, name in NAMES)
     if words == ["mms", "--help"]:
-        assert "cpdi, mpm" in done.stdout
+        assert all(name in done.stdout for name in available("solver.basis"))
 
 
 def test_the_probe_sees_what_is_imported() -> None:

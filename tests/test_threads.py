@@ -15,14 +15,15 @@ from solver._jit import use_threads
 from solver.boundary import box
 from solver.layout import rectangle
 from solver.material.neo_hookean import NeoHookean
-from solver.plugins import available, load
+from solver.plugins import available, create, load
 from solver.slabs import WIDTH, Slabs
 from solver.state import Grid, Particles
-from solver.step import Model, RunFailed, advance, particles_to_grid
+from solver.step import Model, RunFailed, Scheme, advance, particles_to_grid
 
 BASES = available("solver.basis")
 LAW = NeoHookean(E=1.0, nu=0.3, rho0=1.0)
 ARRAYS = ("X", "x", "v", "F", "sigma", "m", "V0", "domain")
+USUAL = Scheme()
 every_basis = pytest.mark.parametrize("name", BASES)
 
 
@@ -30,7 +31,7 @@ def still(p: Particles, t: float) -> None:
     """No body force."""
 
 
-def channel(name: str, columns: int = 64, rows: int = 12, order: Any = None) -> Model:
+def channel(name: str, columns: int = 64, rows: int = 12, order: Any = None, scheme: Scheme = USUAL) -> Model:
     """A body of 6 x 6 cells near the left end of a channel with cells of side one, presented in the given order."""
     grid = Grid(1.0, np.zeros(2), np.array([columns, rows], dtype=float))
     basis = load("solver.basis", name)()
@@ -38,7 +39,7 @@ def channel(name: str, columns: int = 64, rows: int = 12, order: Any = None) -> 
     keep = np.flatnonzero((np.abs(whole.X - [4, rows / 2]) < 3).all(axis=1))
     keep = keep if order is None else keep[order]
     body = Particles(whole.X[keep], whole.m[keep], whole.V0[keep], whole.domain[keep])
-    return Model(grid, body, basis, LAW, box(grid, "roller"), 0.05)
+    return Model(grid, body, basis, LAW, box(grid, "roller"), 0.05, scheme)
 
 
 def fly(m: Model, steps: int) -> Model:
@@ -65,6 +66,19 @@ def test_order_of_presentation(name: str, monkeypatch: pytest.MonkeyPatch) -> No
         a, b = plain.in_initial_order(array)[order], shuffled.in_initial_order(array)
         np.testing.assert_allclose(b, a, atol=1e-10 * np.abs(a).max(initial=1.0), rtol=0)
     assert np.abs(plain.F - np.eye(2)).max() > 0.05
+
+
+@pytest.mark.parametrize("stress", ["usl", "musl", "usf"])
+@pytest.mark.parametrize("transfer", available("solver.transfers"))
+def test_order_of_presentation_with_every_transfer(transfer: str, stress: str) -> None:
+    """What a transfer keeps of a particle travels with it across the slabs."""
+    scheme, order = Scheme(create("solver.transfers", transfer), stress), np.random.default_rng(1).permutation(144)
+    plain, shuffled = (fly(channel("cpdi", order=o, scheme=scheme), 140).particles for o in (None, order))
+    assert plain.x[:, 0].min() > 5 * WIDTH
+    for array in (*ARRAYS, "B"):
+        a, b = plain.in_initial_order(array)[order], shuffled.in_initial_order(array)
+        np.testing.assert_allclose(b, a, atol=1e-10 * np.abs(a).max(initial=1.0), rtol=0)
+    assert plain.B.any() == (transfer == "apic")
 
 
 @every_basis
@@ -140,15 +154,15 @@ def test_widening_ends() -> None:
         particles_to_grid(m)
 
 
-def after(method: str, solution: str, threads: int) -> dict[str, Any]:
+def after(method: str, solution: str, threads: int, **scheme: str) -> dict[str, Any]:
     """Bits of a run with 6400 particles, more than one chunk, and of its norms."""
     use_threads(threads)
     assert numba.get_num_threads() == threads
-    m, comparison, _ = setup(Run(method, solution, "neo_hookean", 40, 4, 0.4))
+    m, comparison, _ = setup(Run(method, solution, "neo_hookean", 40, 4, 0.4, **scheme))
     for _ in range(45):
         advance(m, comparison)
     comparison(m.particles, m.time)
-    bits = {array: m.particles.in_initial_order(array).tobytes() for array in ("x", "v", "F", "sigma", "b")}
+    bits = {array: m.particles.in_initial_order(array).tobytes() for array in ("x", "v", "F", "sigma", "b", "B")}
     use_threads(1)
     return bits | {"norms": comparison.norms.errors(), "width": m.slabs.width, "grid": m.grid.given.tobytes()}
 
@@ -161,6 +175,14 @@ needs_two = pytest.mark.skipif(numba.config.NUMBA_NUM_THREADS < 2, reason="one p
 @every_basis
 def test_threads_give_the_same_bits(name: str, solution: str) -> None:
     assert after(name, solution, 1) == after(name, solution, 2)
+
+
+@needs_two
+@pytest.mark.parametrize("stress", ["usl", "musl", "usf"])
+@pytest.mark.parametrize("transfer", available("solver.transfers"))
+def test_threads_give_the_same_bits_with_every_transfer(transfer: str, stress: str) -> None:
+    one, two = (after("cpdi", "clamped_shear", threads, transfer=transfer, stress=stress) for threads in (1, 2))
+    assert one == two
 
 
 @needs_two

@@ -6,11 +6,12 @@ from dataclasses import replace
 import fixtures_study as fixtures
 import pytest
 
-from cases.expectations import EXPECTED
+from cases.expectations import registry
 from cases.mms_study import SOLUTIONS, Sweep, build, canonical
 from cases.order import Expectation, Outcome, Verdict
-from cases.study import Declared, Failure, Result, Run, Study
+from cases.study import QUANTITIES, Declared, Failure, Result, Run, Study
 from cases.verdicts import Finding, exit_code, findings, refinement
+from solver.plugins import TRANSFERS, available
 
 PASS, FAIL, INCONCLUSIVE, ERROR = Outcome
 JUDGED = Declared("cpdi", "axis_aligned", 4, "u", "rms", True, Expectation(2.0))
@@ -182,13 +183,18 @@ def built(**changes: object) -> Study:
     return build(sweep(**changes), "verify mms", "mms")
 
 
-@pytest.mark.parametrize(("method", "solution"), EXPECTED)
+REGISTERED = sorted({(entry.method, entry.solution) for entry in registry() if entry.solution in available(SOLUTIONS)})
+
+
+@pytest.mark.parametrize(("method", "solution"), REGISTERED)
 def test_judged_is_u_in_rms_with_4_and_9_per_cell(method: str, solution: str) -> None:
     declared = built(methods=(method,), solution=solution).declared
     judged = {(d.quantity, d.norm, d.ppc) for d in declared if d.judged}
     assert judged == {("u", "rms", 4), ("u", "rms", 9)}
     assert len(declared) == 3 * 4 * 4  # each of 3 particle counts, 4 quantities and 4 norms is at least shown
-    assert all((d.expectation is not None) == d.judged for d in declared)
+    assert all(d.expectation is not None for d in declared if d.judged)
+    registered = {(d.quantity, d.ppc) for d in declared if d.expectation}  # the others are shown beside it
+    assert registered == {(quantity, ppc) for quantity in QUANTITIES for ppc in (4, 9)}
 
 
 @pytest.mark.parametrize("changes", [{"solution": "axis_aligned:A=0.01"}, {"material": "neo_hookean:nu=0.2"}])
@@ -202,6 +208,22 @@ def test_nothing_is_expected_of_linear_elasticity() -> None:
     study = built(material="linear_elastic")
     assert not any(d.judged for d in study.declared)
     assert {run.courant for run in study.runs} == {0.4}
+
+
+@pytest.mark.parametrize(
+    "changes", [{"transfer": "apic"}, {"transfer": "flip:share=0.95"}, {"stress": "musl"}, {"stress": "usf"}]
+)
+def test_nothing_is_expected_of_another_transfer_or_stress_order(changes: dict[str, str]) -> None:
+    study = built(**changes)
+    assert not any(d.judged for d in study.declared)
+    assert {getattr(run, key) for run in study.runs for key in changes} == set(changes.values())
+
+
+def test_a_transfer_has_one_name() -> None:
+    assert built(transfer="flip:share=1").runs == built().runs
+    assert any(d.judged for d in built(transfer="flip:share=1.0").declared)
+    assert canonical(TRANSFERS, "fmpm:order=3.0") == "fmpm:order=3"
+    assert canonical(TRANSFERS, "fmpm:order=2") == "fmpm"
 
 
 def test_halved_runs_only_where_an_order_is_expected() -> None:
@@ -248,7 +270,9 @@ def test_defaults_in_other_words_are_judged() -> None:
         ({"cells": (8, 1)}, "whole numbers from 2 to 4096"),
         ({"ppc": (2,)}, "choose from 1, 4, 9, 16"),
         ({"courant": 0.0}, "0.001 to 10"),
-        ({"flip": -0.1}, "between 0 .PIC. and 1 .FLIP."),
+        ({"transfer": "flip:share=-0.1"}, "above 0 and up to 1"),
+        ({"transfer": "nope"}, "choose from apic, flip, fmpm, pic"),
+        ({"stress": "last"}, "choose from usl, musl, usf"),
         ({"solution": "nope"}, "choose from"),
         ({"material": "neo_hookean:nu=0.5"}, "between -1 and 0.5"),
     ],

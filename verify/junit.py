@@ -33,7 +33,8 @@ def write_junit(path: Path, study: Study, found: Sequence[Finding]) -> None:
         if v.outcome is not Outcome.PASS:
             kind = "error" if v.outcome is Outcome.ERROR else "failure"
             ElementTree.SubElement(case, kind, type=str(v.outcome), message=v.reason)
-        ElementTree.SubElement(case, "system-out").text = v.reason
+        stall = [finding.stall.where + ".", *finding.stall.reasons] if finding.stall else []
+        ElementTree.SubElement(case, "system-out").text = "\n".join([v.reason, *stall])
     outcomes = [f.verdict.outcome for f in judged]
     suite.set("errors", str(outcomes.count(Outcome.ERROR)))
     suite.set("failures", str(outcomes.count(Outcome.FAIL) + outcomes.count(Outcome.INCONCLUSIVE)))

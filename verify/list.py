@@ -4,17 +4,17 @@ import ast
 
 import typer
 
-from solver.plugins import CASES, KINDS, MATERIALS, METHODS, SOLUTIONS, available, folder
+from solver.plugins import CASES, KINDS, MATERIALS, METHODS, SOLUTIONS, TRANSFERS, available, folder
 from verify.output import printing
 
 
 def list_plugins() -> None:
     """List cases, methods, solutions and materials with a line about each."""
     with printing():
-        for package in (CASES, METHODS, SOLUTIONS, MATERIALS):
+        for package in (CASES, METHODS, TRANSFERS, SOLUTIONS, MATERIALS):
             typer.echo(f"{KINDS[package]}s")
             for name in available(package):
-                typer.echo(f"  {name:16}{summary(package, name)}")
+                typer.echo(f"  {name:20}{summary(package, name)}")
 
 
 def summary(package: str, name: str) -> str:

@@ -9,7 +9,10 @@ from typing import Annotated
 import typer
 
 from verify.audit import audit
+from verify.expectations import expectations
+from verify.graded import graded
 from verify.list import list_plugins
+from verify.methods import methods
 from verify.mms import mms
 from verify.report import report
 
@@ -17,7 +20,10 @@ USAGE, STOPPED = 2, 130
 
 app = typer.Typer(name="verify", rich_markup_mode=None, pretty_exceptions_enable=False)
 app.command("mms")(mms)
+app.command("methods")(methods)
+app.command("graded")(graded)
 app.command("audit")(audit)
+app.command("expectations")(expectations)
 app.command("list")(list_plugins)
 app.command("report")(report)
 

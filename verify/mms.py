@@ -4,11 +4,13 @@ import shlex
 import sys
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, get_args
 
 import typer
 
-from solver.plugins import MATERIALS, METHODS, SOLUTIONS
+from mms.layouts import LAYOUTS
+from solver.orders import Stress
+from solver.plugins import MATERIALS, METHODS, SOLUTIONS, TRANSFERS
 from verify.choices import choices, completion, integers
 
 USUAL = {"cells": "8,16,32,64,128", "ppc": "1,4,9"}
@@ -25,7 +27,7 @@ def mms(
     solution: Annotated[
         str,
         typer.Option(
-            help=f"{choices(SOLUTIONS)}; parameters as axis_aligned:A=0.01,phase=0.5.",
+            help=f"{choices(SOLUTIONS)}; or a file of your own; parameters as axis_aligned:A=0.01,phase=0.5.",
             autocompletion=completion(SOLUTIONS),
         ),
     ] = "axis_aligned",
@@ -38,11 +40,45 @@ def mms(
     material: Annotated[
         str,
         typer.Option(
-            help=f"{choices(MATERIALS)}; parameters as neo_hookean:nu=0.2.", autocompletion=completion(MATERIALS)
+            help=f"{choices(MATERIALS)}; parameters as neo_hookean:nu=0.2.",
+            autocompletion=completion(MATERIALS),
+            show_default="the solution's own",
         ),
-    ] = "neo_hookean",
-    courant: Annotated[float, typer.Option(help="C dt / dx, C the reference speed of the solution.")] = 0.4,
-    flip: Annotated[float, typer.Option(help="Share of FLIP in the particle velocity, the rest is PIC.")] = 1.0,
+    ] = "",
+    courant: Annotated[
+        str,
+        typer.Option(
+            help="C dt / dx, C the reference speed of the solution; with more, 0.4,0.2,0.1, the finest cells run with "
+            "each, and the report has an axis of time."
+        ),
+    ] = "0.4",
+    replicates: Annotated[
+        int,
+        typer.Option(
+            help="Runs of each point, with the particles elsewhere in their cells: an order with its scatter."
+        ),
+    ] = 1,
+    transfer: Annotated[
+        str,
+        typer.Option(
+            help=f"{choices(TRANSFERS)}; parameters as flip:share=0.95 or fmpm:order=3.",
+            autocompletion=completion(TRANSFERS),
+        ),
+    ] = "flip",
+    stress: Annotated[
+        str,
+        typer.Option(
+            help=f"{', '.join(get_args(Stress))}: update last, modified last, first.",
+            autocompletion=lambda incomplete: [word for word in get_args(Stress) if word.startswith(incomplete)],
+        ),
+    ] = "usl",
+    layout: Annotated[
+        str,
+        typer.Option(
+            help=f"{choices(LAYOUTS)}: how particles are spread; parameters as graded:contrast=3,power=0.5.",
+            autocompletion=completion(LAYOUTS),
+        ),
+    ] = "uniform",
     staggered: Annotated[bool, typer.Option(help="Start v half a step behind x.")] = True,
     jobs: Annotated[int | None, typer.Option(help="Runs at a time.", show_default="processors / threads")] = None,
     threads: Annotated[int, typer.Option(help="Threads of one run; any number gives the same bits.")] = 1,
@@ -63,16 +99,21 @@ def mms(
     with usage():
         from cases.mms_study import Sweep, build
 
+        first, *times = courants(courant)
         sweep = Sweep(
             methods,
             solution,
             material,
             integers(default["cells"] if cells is None else cells, "--cells"),
             integers(default["ppc"] if ppc is None else ppc, "--ppc"),
-            courant,
-            flip,
+            first,
+            transfer,
+            stress,
             staggered,
             force,
+            tuple(times),
+            replicates,
+            layout,
         )
         named = replace(sweep, cells=Sweep.cells, ppc=Sweep.ppc) if label else sweep
         command = "verify " + shlex.join(repeatable(sys.argv[1:]))
@@ -81,6 +122,14 @@ def mms(
         raise typer.TyperException("--jobs and --threads take whole numbers from 1 on")
     folder = out or Path("results") / study.name
     return conduct(study, Settings(folder, jobs, threads, json_output, junit))
+
+
+def courants(text: str) -> list[float]:
+    """`0.4` or `0.4,0.2,0.1` as numbers; a usage error otherwise."""
+    try:
+        return [float(part) for part in text.split(",")]
+    except ValueError:
+        raise typer.TyperException(f"--courant {text!r} is no list of numbers; write 0.4 or 0.4,0.2,0.1") from None
 
 
 def repeatable(arguments: list[str]) -> list[str]:

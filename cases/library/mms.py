@@ -1,26 +1,28 @@
 """The MMS convergence case: a manufactured solution run on one grid, with the errors of u, v, F and sigma."""
 
-import resource
-import sys
 import time
 from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import asdict, dataclass
 from functools import cache
 from math import ceil, sqrt
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from cases.environment import environment
+from cases.gaps import LOOKS, Gaps
+from cases.memory import forget_peak, peak_memory
 from cases.norms import Norms, compare, new_shares
+from cases.packing import Packing
 from cases.store import Arrays
 from cases.study import QUANTITIES, Failure, Result, Run
+from mms.audit import audit
+from mms.layouts import LAYOUTS
 from mms.manufacture import Manufactured, manufacture
+from mms.spots import Spot
 from solver.boundary import box, moving
-from solver.layout import CENTRED
-from solver.plugins import MATERIALS, METHODS, SOLUTIONS, create, load
+from solver.layout import CENTRED, parallelograms
+from solver.plugins import MATERIALS, METHODS, SOLUTIONS, TRANSFERS, create, load
 from solver.state import Floats, Grid, Particles
 from solver.step import Model, RunFailed, Scheme, advance, check_time_step
 
@@ -31,6 +33,8 @@ class Comparison:
 
     exact: Manufactured
     norms: Norms
+    gaps: Gaps
+    packing: Packing
     shares: Floats
     behind: float  # how far v is behind x in time
 
@@ -53,25 +57,34 @@ def setup(run: Run) -> tuple[Model, Comparison, int]:
     solution: Any = create(SOLUTIONS, run.solution)
     material: Any = create(MATERIALS, run.material)
     dx = width(solution) / run.cells
-    margin = dx * ceil(solution.margin / dx)
+    below, above = dx * np.ceil(np.broadcast_to(solution.margin, (2, 2)) / dx)
     free = solution.boundary == "free"  # no wall ties the grid to the body: the offset moves the grid
     shift = -dx * np.array(run.offset) if free else np.zeros(2)
-    grid = Grid(dx, solution.lower - margin + shift, solution.upper + margin + shift)
+    grid = Grid(dx, solution.lower - below + shift, solution.upper + above + shift)
     steps = ceil(solution.duration / (run.courant * grid.dx / solution.C) * (1 - 1e-12))
     dt = solution.duration / steps
     behind = 0.5 * dt if run.staggered else 0.0
 
     exact, basis = manufactured(run.solution, run.material), load(METHODS, run.method)()
-    layout = solution.layout(dx, run.ppc, CENTRED if free else run.offset)
+    layout = create(LAYOUTS, run.layout)(solution, exact, dx, run.ppc, CENTRED if free else run.offset)
     particles, X = basis.populate(layout, material.rho0, lambda places: exact.x(places, 0.0)), layout.X
     particles.x, particles.v = exact.x(X, 0.0), exact.v(X, -behind)
     particles.F, particles.sigma = exact.F(X, 0.0), exact.sigma(X, 0.0)
     particles.carried = exact.kernel.columns(X)
-    scheme = Scheme(run.flip, run.staggered)
+    transfer, stress = create(TRANSFERS, run.transfer), run.stress
+    scheme = Scheme(transfer, stress, run.staggered)
     walls = moving(grid, solution.walls) if solution.boundary == "moving" else box(grid, solution.boundary)
     model = Model(grid, particles, basis, material, walls, dt, scheme)
-    norms = Norms(len(particles), float(particles.V0.mean()))
-    return model, Comparison(exact, norms, new_shares(particles), behind), steps
+    transfer.start(model, lambda X: velocity_gradient(exact, X, -behind, 1e-3 * dt))
+    norms, gaps = Norms(len(particles), float(particles.V0.mean())), Gaps(exact, layout)
+    return model, Comparison(exact, norms, gaps, Packing(exact, layout, dx), new_shares(particles), behind), steps
+
+
+def velocity_gradient(exact: Manufactured, X: Floats, t: float, short: float) -> Floats:
+    """L = dF/dt F^-1 (P,2,2), by the central difference of the exact F over the times t - short and t + short."""
+    rate = (exact.F(X, t + short) - exact.F(X, t - short)) / (2 * short)
+    L: Floats = rate @ np.linalg.inv(exact.F(X, t))
+    return L
 
 
 def width(solution: Any) -> float:
@@ -86,22 +99,33 @@ def manufactured(solution: str, material: str) -> Manufactured:
     return manufacture(create(SOLUTIONS, solution), law, law.rho0)
 
 
+@cache
+def audited(solution: str, material: str) -> tuple[Spot, ...]:
+    """The auditor's lines on two specifications, once in a process."""
+    return audit(manufactured(solution, material), create(SOLUTIONS, solution), create(MATERIALS, material)).spots
+
+
 def execute(run: Run, tick: Callable[[float], None] = lambda share: None) -> tuple[Result, Arrays]:
     """Run to the end, or to where it cannot go on: a failed run is a Result. `tick` hears the share that is done."""
     forget_peak()
     model, comparison, steps = setup(run)
+    often = max(1, steps // LOOKS)
     failure, started, used = None, time.perf_counter(), time.process_time()
     try:
         if not run.force:
             check_time_step(model)
+        comparison.packing.begin(model)
         for step in range(steps):
             advance(model, comparison)
+            if step % often == 0:
+                comparison.gaps.look(model)
+                comparison.packing.look(model)
             tick((step + 1) / steps)
         comparison(model.particles, model.time)
     except RunFailed as reason:
         failure = Failure(reason.reason, reason.step, reason.particle, reason.cell)
     wall, cpu = time.perf_counter() - started, time.process_time() - used
-    errors, scale = comparison.norms.errors(), magnitude(comparison.exact, model.particles.X, steps * model.dt)
+    errors, scale = comparison.norms.errors(), magnitude(comparison.exact, model.particles, steps * model.dt)
     if not failure and not np.isfinite([list(norms.values()) for norms in errors.values()]).all():
         failure = Failure("an error that is not finite", model.steps)
     arrays = snapshot(run, model, comparison)
@@ -116,6 +140,9 @@ def execute(run: Run, tick: Callable[[float], None] = lambda share: None) -> tup
         wall_s=wall,
         cpu_s=cpu,
         crossings=model.crossings,
+        gap=comparison.gaps.most,
+        packed=comparison.packing.packed,
+        audit=audited(run.solution, run.material),
         peak_memory_mb=peak_memory(),
         scale=scale,
         floor={} if failure else round_off(scale, model),
@@ -126,14 +153,17 @@ def execute(run: Run, tick: Callable[[float], None] = lambda share: None) -> tup
     return result, arrays
 
 
-def magnitude(exact: Manufactured, X: Floats, duration: float) -> dict[str, float]:
-    """rms of the exact quantities, from some thousand places and sixteen times."""
-    some = X[:: max(1, len(X) // 1000)]
+def magnitude(exact: Manufactured, particles: Particles, duration: float) -> dict[str, float]:
+    """rms of the exact quantities, from some thousand places and sixteen times; by volume, as the errors are."""
+    step = max(1, len(particles) // 1000)
+    some, volume = particles.X[::step], particles.V0[::step, None] / particles.V0[::step].mean()
     times = duration * (np.arange(16) + 0.5) / 16
     fields = {"u": exact.u, "v": exact.v, "F": exact.F, "sigma": exact.sigma}
     weight = {"sigma": np.array([1.0, 1.0, 1.0, 2.0])}
     squares = {
-        q: np.mean([np.sum(weight.get(q, 1.0) * f(some, t) ** 2) / len(some) for t in times]) for q, f in fields.items()
+        q: np.mean([np.sum(volume * (weight.get(q, 1.0) * f(some, t) ** 2).reshape(len(some), -1)) for t in times])
+        / len(some)
+        for q, f in fields.items()
     }
     return {quantity: sqrt(square) for quantity, square in squares.items()}
 
@@ -149,31 +179,18 @@ def round_off(scale: dict[str, float], model: Model) -> dict[str, float]:
 
 
 def snapshot(run: Run, model: Model, comparison: Comparison) -> Arrays:
-    """The particles at the last step in the initial order, float32, for figures."""
-    solution: Any = create(SOLUTIONS, run.solution)
-    p = model.particles
-    arrays = {name: p.in_initial_order(name) for name in ("X", "x", "F")}
-    arrays["r0"] = solution.layout(width(solution) / run.cells, run.ppc, run.offset).r0
+    """The particles at the last step in the initial order, float32, for figures; points are drawn as if with CPDI."""
+    arrays = {name: model.particles.in_initial_order(name) for name in ("X", "x", "F", "domain")}
+    corners = model.basis.corners(arrays["x"], arrays["F"], arrays.pop("domain"))
+    if corners is None:
+        r0 = comparison.packing.layout.r0
+        corners = parallelograms(arrays["x"], np.einsum("pab,psb->psa", arrays["F"], r0))
     error = arrays["x"] - comparison.exact.x(arrays["X"], model.time)
-    return {name: a.astype(np.float32) for name, a in {**arrays, "error_u": np.hypot(*error.T)}.items()}
+    arrays |= {"corners": corners, "error_u": np.hypot(*error.T)}
+    return {name: a.astype(np.float32) for name, a in arrays.items()}
 
 
 def parameters(kind: str, specification: str) -> dict[str, float]:
     """Every parameter of a solution or material, the defaults too."""
     package = {"solution": SOLUTIONS, "material": MATERIALS}[kind]
     return {f"{kind} {key}": value for key, value in asdict(create(package, specification)).items()}
-
-
-def forget_peak() -> None:
-    """Begin the peak of memory anew (Linux; elsewhere it is that of the process so far)."""
-    with suppress(OSError):
-        Path("/proc/self/clear_refs").write_text("5")
-
-
-def peak_memory() -> float:
-    """Largest resident size since forget_peak, MB."""
-    with suppress(OSError, StopIteration):
-        lines = Path("/proc/self/status").read_text().splitlines()
-        return int(next(line for line in lines if line.startswith("VmHWM")).split()[1]) / 2**10
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    return peak / (2**20 if sys.platform == "darwin" else 2**10)

@@ -10,11 +10,11 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
-from matplotlib.lines import Line2D
 from matplotlib.ticker import NullLocator
 
+from cases.series import Series
 from reports import style, words
-from reports.stored import Record, Series
+from reports.stored import Record
 
 NORMS = ("rms", "printed")
 EXTRA = {"rms": 0.0, "printed": 1.5}  # orders that the norm adds in 2-D with dt ~ h: cases/norms.py
@@ -29,12 +29,18 @@ def convergence(record: Record, solution: str, quantity: str = "u") -> dict[str,
         left, right = cast(Sequence[SubFigure], figures["figure1"].subfigures(1, 2))
         for norm, part in zip(NORMS, (left, right), strict=True):
             _panel(part, record, series, quantity, norm)
-        _legend(figures["figure1"], record, series, columns=len(series) if len(series) < 4 else 2)
+        heads = [(s.first.method, s.first.ppc) for s in series]
+        style.legend(figures["figure1"], methods(record), heads, columns=_columns(len(series)))
         for norm in NORMS:
             alone = figures[f"figure1_{norm}"] = Figure(figsize=style.PANEL, layout="constrained")
             _panel(alone, record, series, quantity, norm)
-            _legend(alone, record, series, columns=2)
+            style.legend(alone, methods(record), heads)
     return figures
+
+
+def _columns(series: int) -> int:
+    """Of the legend below both panels."""
+    return series if series < 4 else 2 if series <= style.SEVERAL else 5
 
 
 def cell_axis(axes: Axes, series: Sequence[Series]) -> None:
@@ -44,7 +50,7 @@ def cell_axis(axes: Axes, series: Sequence[Series]) -> None:
     axes.set_xticks([1 / n for n in cells], [words.cell_size(n) for n in cells])
     axes.xaxis.set_minor_locator(NullLocator())
     axes.set_xlim(0.75 / cells[0], 1.33 / cells[-1])
-    axes.set_xlabel("cell size (edge of the square = 1)")
+    axes.set_xlabel("cell size (width of the body = 1)")
 
 
 def methods(record: Record) -> list[str]:
@@ -109,12 +115,3 @@ def _triangle(axes: Axes, record: Record, series: Sequence[Series], quantity: st
     axes.annotate(
         "1", (np.sqrt(h0 * h1), low), (0, -3), textcoords="offset points", va="top", ha="center", color=style.GREY
     )
-
-
-def _legend(figure: Figure, record: Record, series: Sequence[Series], columns: int) -> None:
-    """Below the panels, so that it never covers a point."""
-    handles = []
-    for s in series:
-        drawn = style.look(methods(record), s.first.method, s.first.ppc)
-        handles.append(Line2D([], [], label=words.series(s.first), **drawn.plot))
-    figure.legend(handles=handles, loc="outside lower center", ncols=columns, handlelength=2.6, columnspacing=1.4)

@@ -1,7 +1,7 @@
 """The error of u over the square at the last step of one run, on the domains of its particles.
 
-A domain is the parallelogram with the corners x ± r1 ± r2, r_i = F r0_i: Sadeghirad, Brannon & Burghardt (2011),
-doi:10.1002/nme.3110. Methods that know points only are drawn with the same domains.
+Domains are drawn as the method has them, so that gaps and overlaps are seen. Methods that know points only are drawn
+with the parallelograms x ± r1 ± r2, r_i = F r0_i: Sadeghirad, Brannon & Burghardt (2011), doi:10.1002/nme.3110.
 """
 
 import numpy as np
@@ -29,7 +29,9 @@ def choose(record: Record, method: str, solution: str, cells: int = CELLS, ppc: 
 
 
 def domains(arrays: Arrays) -> NDArray[np.float64]:
-    """Corners (P,4,2) of the domains at the last step; rows r0[p,0], r0[p,1] are the half side vectors at t = 0."""
+    """Corners (P,4,2) at the last step. Older results have r0[p,0], r0[p,1], half side vectors at t = 0, instead."""
+    if "corners" in arrays:
+        return arrays["corners"].astype(float)
     r = np.einsum("pij,pkj->pki", arrays["F"].astype(float), arrays["r0"].astype(float))
     corners: NDArray[np.float64] = arrays["x"].astype(float)[:, None, :] + np.einsum("ck,pki->pci", CORNERS, r)
     return corners

@@ -7,12 +7,12 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from cases.fit import local_orders
+from cases.series import Series
 from reports import style, words
 from reports.figures.convergence import methods
-from reports.stored import Record, Series
+from reports.stored import Record
 
 
 def orders(record: Record, series: Series, quantity: str, norm: str) -> list[tuple[int, int, float]]:
@@ -32,25 +32,23 @@ def local_order_figure(record: Record, solution: str, quantity: str = "u", norm:
         figure = Figure(figsize=(5.2, 4.8), layout="constrained")
         axes = figure.subplots()
         cells = sorted({run.cells for s in series for run in s.runs})
-        handles = [_draw(axes, record, s, cells, quantity, norm) for s in series]
+        drawn = [s for s in series if _draw(axes, record, s, cells, quantity, norm)]
         _band(axes, record, solution, quantity, norm)
         axes.axhline(0, color=style.INK, linewidth=0.9)
         axes.set_xticks(range(len(cells) - 1), [f"1/{a} →\n1/{b}" for a, b in pairwise(cells)])
         axes.set_xlim(-0.5, max(len(cells) - 1.5, 0.5))
         axes.set(xlabel="from cell size to cell size", ylabel=f"local order of {words.quantity(quantity)}, {norm}")
-        figure.legend(handles=[h for h in handles if h], loc="outside lower center", ncols=2, handlelength=2.6)
+        style.legend(figure, methods(record), [(s.first.method, s.first.ppc) for s in drawn])
     return figure
 
 
-def _draw(axes: Axes, record: Record, series: Series, cells: Sequence[int], quantity: str, norm: str) -> Line2D | None:
-    """A point for each pair of cell sizes, and the entry in the legend; none where there is no pair."""
+def _draw(axes: Axes, record: Record, series: Series, cells: Sequence[int], quantity: str, norm: str) -> bool:
+    """A point for each pair of cell sizes; False where there is none."""
     found = orders(record, series, quantity, norm)
-    if not found:
-        return None
-    drawn = style.look(methods(record), series.first.method, series.first.ppc)
     places = [(cells.index(a) + cells.index(b) - 1) / 2 for a, b, _ in found]
-    axes.plot(places, [p for *_, p in found], **drawn.plot)
-    return Line2D([], [], label=words.series(series.first), **drawn.plot)
+    look = style.look(methods(record), series.first.method, series.first.ppc)
+    axes.plot(places, [p for *_, p in found], **look.plot)
+    return bool(found)
 
 
 def _band(axes: Axes, record: Record, solution: str, quantity: str, norm: str) -> None:

@@ -8,20 +8,37 @@ from solver.state import Floats
 
 
 @kernel(inline=True)
-def value(s, half):
-    """Mean over (s - half, s + half) of the hat max(0, 1 - |s|); lengths in cells. Bardenhagen & Kober 2004, S_ip."""
-    above = min(max(s + half, -1.0), 1.0)
-    below = min(max(s - half, -1.0), 1.0)
-    return (above - below - 0.5 * (above * abs(above) - below * abs(below))) / (2.0 * half)
+def clip(s):
+    """s between -1 and 1; by absolute values, because min and max are branches, and the vectoriser passes them by."""
+    return 0.5 * (abs(s + 1.0) - abs(s - 1.0))
 
 
 @kernel(inline=True)
-def slope(s, half):
+def hat(s):
+    """max(0, 1 - |s|), zero to the bit where it is."""
+    inside = 1.0 - abs(s)
+    return 0.5 * (inside + abs(inside))
+
+
+@kernel(inline=True)
+def value(s, half, per_length):
+    """Mean over (s - half, s + half) of the hat; per_length = 1 / (2 half).
+
+    Lengths in cells. Source: Bardenhagen & Kober 2004, S_ip.
+    """
+    above = clip(s + half)
+    below = clip(s - half)
+    return (above - below - 0.5 * (above * abs(above) - below * abs(below))) * per_length
+
+
+@kernel(inline=True)
+def slope(s, half, per_length):
     """Derivative of the mean by s."""
-    return (max(0.0, 1.0 - abs(s + half)) - max(0.0, 1.0 - abs(s - half))) / (2.0 * half)
+    return (hat(s + half) - hat(s - half)) * per_length
 
 
 def half_lengths(layout: Layout) -> Floats:
     """Half lengths (P,2) of domains along the axes: of a turned domain, its extents scaled to its area."""
     extent: Floats = np.abs(layout.r0).sum(axis=1)
-    return extent * np.sqrt(layout.V0 / (4.0 * extent.prod(axis=1)))[:, None]
+    half: Floats = extent * np.sqrt(layout.V0 / (4.0 * extent.prod(axis=1)))[:, None]
+    return half

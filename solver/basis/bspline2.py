@@ -4,7 +4,7 @@
 
 At a wall the weight of the node behind it is folded onto the two nearest in the body by linear extrapolation,
 N_0 + 2 N_-1 and N_1 - N_-1. That leaves linear fields exact and the wall node interpolatory, so a given velocity can
-stand there; these are the boundary functions of Steffen, Kirby & Berzins 2008 and of Andersen & Andersen 2010.
+stand there; these are the boundary functions of Steffen, Kirby & Berzins 2008.
 Order 2: continuous gradients remove the error of cell crossing, but with few particles a cell the quadrature stalls it.
 """
 
@@ -40,10 +40,10 @@ def fill(x, F, domain, ox, oy, inv_dx, nx, ny, x0, x1, y0, y1, table, node):
         bad += outside(x0, x1, y0, y1, i - 1.0, i + 0.5, j - 1.0, j + 0.5)
         sx = px - i
         sy = py - j
-        X0 = 0.5 * (0.5 - sx) ** 2
-        X2 = 0.5 * (0.5 + sx) ** 2
-        Y0 = 0.5 * (0.5 - sy) ** 2
-        Y2 = 0.5 * (0.5 + sy) ** 2
+        X0 = 0.5 * (0.5 - sx) * (0.5 - sx)
+        X2 = 0.5 * (0.5 + sx) * (0.5 + sx)
+        Y0 = 0.5 * (0.5 - sy) * (0.5 - sy)
+        Y2 = 0.5 * (0.5 + sy) * (0.5 + sy)
         left = 1.0 * (i == PAD)  # whether the first, or the last, of the three nodes is behind a wall
         right = 1.0 * (i == nx - 1 - PAD)
         below = 1.0 * (j == PAD)

@@ -9,8 +9,10 @@ edge integrals of the interpolation, divided by the area.
 
 from typing import ClassVar
 
+import numpy as np
+
 from solver._jit import kernel
-from solver.layout import Layout
+from solver.layout import Layout, parallelograms
 from solver.state import Floats
 from solver.weights import FILL, Basis, Place, bilinear, outside
 
@@ -58,3 +60,9 @@ class Cpdi(Basis):
     def domain(layout: Layout, place: Place) -> Floats:
         """Initial half side vectors r0; F moves them."""
         return layout.r0.reshape(-1, 4).copy()
+
+    @staticmethod
+    def corners(x: Floats, F: Floats, domain: Floats) -> Floats:
+        """x - r1 - r2 and so on, r = F r0."""
+        r0 = domain.reshape(-1, 2, 2)
+        return parallelograms(x, np.einsum("pab,psb->psa", F, r0))

@@ -91,6 +91,11 @@ class Cpdi2(Basis):
         return place(layout.corners.reshape(-1, 2)).reshape(-1, 8)
 
     @staticmethod
+    def corners(x: Floats, F: Floats, domain: Floats) -> Floats:
+        """As they have moved."""
+        return domain.reshape(-1, 4, 2)
+
+    @staticmethod
     def convect(particles: Particles, grid: Grid, dt: float) -> None:
         """Corners are material points: they go with the velocity of the grid."""
         move_all(particles.domain.ravel(), grid.origin, 1.0 / grid.dx, grid.ny, grid.motion, dt)

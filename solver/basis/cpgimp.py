@@ -11,10 +11,18 @@ import numpy as np
 
 from solver._jit import kernel
 from solver.basis._gimp import half_lengths, slope, value
-from solver.layout import Layout
+from solver.layout import Layout, parallelograms
 from solver.state import Floats
 from solver.tensor import four
 from solver.weights import FILL, Basis, Place, outside
+
+
+@kernel(inline=True)
+def column(a, b, first, sx, lx, per_x, inv_dx, Y0, Y1, Y2, Y3, D0, D1, D2, D3, table, node):
+    """The four nodes of column a. Called four times: the vectoriser passes a loop by."""
+    Nx = value(sx - a, lx, per_x)
+    Gx = slope(sx - a, lx, per_x) * inv_dx
+    four(4 * a, 16, b, first, Nx, Gx, Y0, Y1, Y2, Y3, D0, D1, D2, D3, table, node)
 
 
 @kernel(FILL)
@@ -30,21 +38,23 @@ def fill(x, F, l0, ox, oy, inv_dx, nx, ny, x0, x1, y0, y1, table, node):
         j = np.floor(py - ly)
         bad += outside(x0, x1, y0, y1, i, i + 2.5, j, j + 2.5)
         bad += int(not (max(lx, ly) <= 1.0)) + int(not (min(lx, ly) > 0.0))
+        per_x = 0.5 / lx
+        per_y = 0.5 / ly
         sx = px - i
         sy = py - j
         first = np.int64(i) * ny + np.int64(j)
-        Y0 = value(sy, ly)
-        Y1 = value(sy - 1.0, ly)
-        Y2 = value(sy - 2.0, ly)
-        Y3 = value(sy - 3.0, ly)
-        D0 = slope(sy, ly) * inv_dx
-        D1 = slope(sy - 1.0, ly) * inv_dx
-        D2 = slope(sy - 2.0, ly) * inv_dx
-        D3 = slope(sy - 3.0, ly) * inv_dx
-        for a in range(4):
-            Nx = value(sx - a, lx)
-            Gx = slope(sx - a, lx) * inv_dx
-            four(4 * a, 16, b, first + a * ny, Nx, Gx, Y0, Y1, Y2, Y3, D0, D1, D2, D3, table, node)
+        Y0 = value(sy, ly, per_y)
+        Y1 = value(sy - 1.0, ly, per_y)
+        Y2 = value(sy - 2.0, ly, per_y)
+        Y3 = value(sy - 3.0, ly, per_y)
+        D0 = slope(sy, ly, per_y) * inv_dx
+        D1 = slope(sy - 1.0, ly, per_y) * inv_dx
+        D2 = slope(sy - 2.0, ly, per_y) * inv_dx
+        D3 = slope(sy - 3.0, ly, per_y) * inv_dx
+        column(0, b, first, sx, lx, per_x, inv_dx, Y0, Y1, Y2, Y3, D0, D1, D2, D3, table, node)
+        column(1, b, first + ny, sx, lx, per_x, inv_dx, Y0, Y1, Y2, Y3, D0, D1, D2, D3, table, node)
+        column(2, b, first + 2 * ny, sx, lx, per_x, inv_dx, Y0, Y1, Y2, Y3, D0, D1, D2, D3, table, node)
+        column(3, b, first + 3 * ny, sx, lx, per_x, inv_dx, Y0, Y1, Y2, Y3, D0, D1, D2, D3, table, node)
     return bad == 0
 
 
@@ -63,3 +73,9 @@ class Cpgimp(Basis):
     def domain(layout: Layout, place: Place) -> Floats:
         """Half lengths along x and y, as at first."""
         return half_lengths(layout)
+
+    @staticmethod
+    def corners(x: Floats, F: Floats, domain: Floats) -> Floats:
+        """Of rectangles along the axes."""
+        half = np.abs(np.diagonal(F, axis1=1, axis2=2)) * domain
+        return parallelograms(x, half[:, :, None] * np.eye(2))

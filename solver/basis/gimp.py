@@ -11,7 +11,7 @@ import numpy as np
 
 from solver._jit import kernel
 from solver.basis._gimp import half_lengths, slope, value
-from solver.layout import Layout
+from solver.layout import Layout, parallelograms
 from solver.state import Floats
 from solver.tensor import three
 from solver.weights import FILL, Basis, Place, outside
@@ -32,18 +32,35 @@ def fill(x, F, l0, ox, oy, inv_dx, nx, ny, x0, x1, y0, y1, table, node):
         j = np.floor(py + 0.5)
         bad += outside(x0, x1, y0, y1, i - 1.0, i + 0.5, j - 1.0, j + 0.5)
         bad += int(not (max(lx, ly) < LARGEST))
+        per_x = 0.5 / lx
+        per_y = 0.5 / ly
         sx = px - i
         sy = py - j
         first = (np.int64(i) - 1) * ny + np.int64(j) - 1
-        Y0 = value(sy + 1.0, ly)
-        Y1 = value(sy, ly)
-        Y2 = value(sy - 1.0, ly)
-        D0 = slope(sy + 1.0, ly) * inv_dx
-        D1 = slope(sy, ly) * inv_dx
-        D2 = slope(sy - 1.0, ly) * inv_dx
+        Y0 = value(sy + 1.0, ly, per_y)
+        Y1 = value(sy, ly, per_y)
+        Y2 = value(sy - 1.0, ly, per_y)
+        D0 = slope(sy + 1.0, ly, per_y) * inv_dx
+        D1 = slope(sy, ly, per_y) * inv_dx
+        D2 = slope(sy - 1.0, ly, per_y) * inv_dx
         for a in range(3):
             s = sx + 1.0 - a
-            three(3 * a, 9, b, first + a * ny, value(s, lx), slope(s, lx) * inv_dx, Y0, Y1, Y2, D0, D1, D2, table, node)
+            three(
+                3 * a,
+                9,
+                b,
+                first + a * ny,
+                value(s, lx, per_x),
+                slope(s, lx, per_x) * inv_dx,
+                Y0,
+                Y1,
+                Y2,
+                D0,
+                D1,
+                D2,
+                table,
+                node,
+            )
     return bad == 0
 
 
@@ -60,3 +77,9 @@ class Gimp(Basis):
     def domain(layout: Layout, place: Place) -> Floats:
         """Half lengths along x and y, as at first."""
         return half_lengths(layout)
+
+    @staticmethod
+    def corners(x: Floats, F: Floats, domain: Floats) -> Floats:
+        """Of rectangles along the axes."""
+        half = domain
+        return parallelograms(x, half[:, :, None] * np.eye(2))

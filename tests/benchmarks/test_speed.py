@@ -72,6 +72,16 @@ def test_updates(benchmark, method: str, threads: int) -> None:
     benchmark.extra_info["million updates a second"] = len(model.particles) / benchmark.stats.stats.median / 1e6
 
 
+@pytest.mark.parametrize("method", [method for method in METHODS if method != "mpm"])
+def test_against_mpm(benchmark, method: str) -> None:
+    """Time of a step over that of classical MPM on one thread, beside the ratio of their neighbours."""
+    use_threads(1)
+    mine, classical = start(method)[0], start("mpm")[0]
+    ratio, _ = paired(lambda: advance(classical, unloaded), lambda: advance(mine, unloaded))
+    neighbours = mine.basis.support / classical.basis.support
+    report(benchmark, f"{method}: time over mpm, with {neighbours:.2f} times the neighbours", ratio)
+
+
 @pytest.mark.parametrize("method", ["mpm", "cpdi"])
 def test_against_yardstick(benchmark, method: str) -> None:
     """Speed on one thread over that of the hand-fused kernel, which must give the same particles."""

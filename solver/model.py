@@ -1,0 +1,107 @@
+"""What a run holds between two steps, and how a run that cannot go on ends."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import numpy as np
+
+from solver.boundary import MASS_CUTOFF, Walls
+from solver.orders import check_stress
+from solver.slabs import Slabs
+from solver.state import Grid, Ints, Particles
+from solver.transfer import CHUNK
+from solver.transfers._base import Transfer
+from solver.transfers.flip import Flip
+from solver.weights import Basis
+
+Load = Callable[[Particles, float], None]
+
+
+class Material(Protocol):
+    """A law: writes particles.sigma (and its history) once a step, from the new F."""
+
+    rho0: float
+
+    def update(self, particles: Particles, dt: float) -> None:
+        """Stress at the end of a step of length dt."""
+
+    def wave_speed(self) -> float:
+        """Speed of the fastest wave in the undeformed state."""
+
+
+class RunFailed(Exception):  # noqa: N818 - a failed run is a result, not an error
+    """The run cannot go on. `particle`: its row in the initial layout, -1 if none; `cell`: where it is."""
+
+    def __init__(self, reason: str, step: int = 0, particle: int = -1, cell: tuple[int, int] | None = None) -> None:
+        super().__init__(reason)
+        self.reason, self.step, self.particle, self.cell = reason, step, particle, cell
+
+
+@dataclass(frozen=True)
+class Scheme:
+    """`transfer`: see solver/transfers; `stress`: when it is updated, solver/orders.py; `staggered`: v at half steps.
+
+    The start of a staggered run is v at t = -dt/2; without it the first order of time is lost.
+    """
+
+    transfer: Transfer = field(default_factory=Flip)
+    stress: str = "usl"
+    staggered: bool = True
+
+    def __post_init__(self) -> None:
+        check_stress(self.stress)
+
+
+@dataclass
+class Model:
+    """All that one run holds. `time` is that of x, F and sigma; v is half a step behind it in a staggered run."""
+
+    grid: Grid
+    particles: Particles
+    basis: Basis
+    material: Material
+    walls: Walls
+    dt: float
+    scheme: Scheme = Scheme()
+    steps: int = 0
+    slabs: Slabs = field(default_factory=Slabs)
+    lost: Ints = field(init=False)
+    crossed: Ints = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.lost = np.full(-(-len(self.particles) // CHUNK), -1)
+        self.crossed = np.zeros(len(self.lost), np.int64)
+        self.slabs.sort(self.grid, self.particles)
+        self.scheme.transfer.start(self)
+
+    @property
+    def crossings(self) -> int:
+        """Faces of cells that particles have passed so far."""
+        return int(self.crossed.sum())
+
+    @property
+    def time(self) -> float:
+        """Steps times dt, so that no rounding piles up."""
+        return self.steps * self.dt
+
+    @property
+    def cutoff(self) -> float:
+        """Mass below which a node has no velocity."""
+        return MASS_CUTOFF * float(self.particles.m.max())
+
+
+def check_time_step(model: Model) -> None:
+    """Raise RunFailed where dt is above dx / (c + |v|), the time a wave needs to cross a cell."""
+    speed = model.material.wave_speed() + float(np.hypot(*model.particles.v.T).max())
+    limit = model.grid.dx / speed
+    if model.dt > limit:
+        raise RunFailed(f"dt = {model.dt:.3g} is above the stability limit {limit:.3g} (--force runs it all the same)")
+
+
+def fail(model: Model, row: int, reason: str) -> None:
+    """Raise RunFailed for the particle in that row; what is not finite is named first, since it is the cause."""
+    p = model.particles
+    finite = all(np.isfinite(a[row]).all() for a in (p.x, p.v, p.F, p.sigma))
+    cell = tuple(model.grid.cell(p.x[row]).tolist()) if np.isfinite(p.x[row]).all() else None
+    raise RunFailed(reason if finite else "a value that is not finite", model.steps, int(p.id[row]), cell)

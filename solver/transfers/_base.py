@@ -1,0 +1,32 @@
+"""What a transfer is: the share of FLIP in a particle's velocity, and the places in the step where it may do more.
+
+All of them conserve linear momentum: the shape values of a particle sum to one, and their gradients to zero.
+"""
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from solver.state import Floats
+
+if TYPE_CHECKING:
+    from solver.model import Model
+
+Gradient = Callable[[Floats], Floats]
+
+
+class Transfer:
+    """Between particles and grid. A subclass is a frozen dataclass of its parameters; this one does no more."""
+
+    share: float = 0.0  # of FLIP: particles take the grid's acceleration; the rest is its velocity
+
+    def start(self, model: "Model", L: Gradient | None = None) -> None:
+        """State of its own for a body whose velocity gradient is L(X) (P,2,2); none means that it is not known."""
+
+    def give(self, model: "Model", momentum: Floats) -> None:
+        """Add to the first two columns of `momentum` (n,4) what the particles' velocities do not tell."""
+
+    def filter(self, model: "Model", motion: Floats) -> None:
+        """Make of lumped velocities, the first columns of `motion` (n,4), those that move and strain the particles."""
+
+    def take(self, model: "Model") -> None:
+        """Take from the grid's new velocities what particles keep besides v."""

@@ -1,0 +1,195 @@
+"""Single passes between particles and grid, for steps that cannot take all at once as solver/transfer.py does.
+
+Imported only by those who need them: kernels take seconds to compile. Weights are those of the places and F of the
+particles at the time of the call, which transfer.p2g has found to fit into their slabs.
+"""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numba import prange
+
+from solver._jit import BLOCK, F1, F2, F3, I1, f8, i8, kernel, nothing
+from solver.boundary import solve
+from solver.state import Floats
+from solver.transfer import CHUNK, B, cells_of, invertible
+from solver.weights import Fill
+
+if TYPE_CHECKING:
+    from solver.model import Model
+
+
+@kernel(nothing(Fill, i8, i8, i8, i8, F2, F3, F1, F2, F1, F1, f8, i8, i8, F2))
+def spread_slab(fill, K, W, start, end, x, F, m, values, domain, origin, inv_dx, nx, ny, out):
+    """The particles start ... end-1."""
+    xs = x.reshape(-1)
+    Fs = F.reshape(-1)
+    table = np.empty(3 * K * BLOCK)
+    node = np.empty(K * BLOCK, np.int64)
+    for lo in range(start, end, BLOCK):
+        hi = min(lo + BLOCK, end)
+        fill(
+            xs[2 * lo : 2 * hi], Fs[4 * lo : 4 * hi], domain[W * lo : W * hi],
+            origin[0], origin[1], inv_dx, nx, ny, 0.0, nx - 1.0, 0.0, ny - 1.0, table, node,
+        )  # fmt: skip
+        for q in range(np.uint64(hi - lo)):
+            p = np.uint64(lo) + q
+            px = m[p] * values[p, 0]
+            py = m[p] * values[p, 1]
+            for k in range(np.uint64(K)):
+                i = np.uint64(node[k * B + q])
+                N = table[k * B + q]
+                out[i, 0] += N * px
+                out[i, 1] += N * py
+
+
+@kernel(nothing(Fill, i8, i8, I1, F2, F3, F1, F2, F1, F1, f8, i8, i8, F2), parallel=True)
+def spread_all(fill, K, W, start, x, F, m, values, domain, origin, inv_dx, nx, ny, out):
+    """Adds sum m N values to the first columns of `out` (n,4), in slabs of two colours, as transfer.p2g."""
+    slabs = start.shape[0] - 1
+    for colour in range(2):
+        for pair in prange((slabs - colour + 1) // 2):
+            s = 2 * pair + colour
+            spread_slab(fill, K, W, start[s], start[s + 1], x, F, m, values, domain, origin, inv_dx, nx, ny, out)
+
+
+@kernel(nothing(Fill, i8, i8, i8, i8, F2, F3, F1, F1, f8, i8, i8, F2, F2))
+def collect_chunk(fill, K, W, start, end, x, F, domain, origin, inv_dx, nx, ny, motion, values):
+    """The particles start ... end-1."""
+    xs = x.reshape(-1)
+    Fs = F.reshape(-1)
+    table = np.empty(3 * K * BLOCK)
+    node = np.empty(K * BLOCK, np.int64)
+    for lo in range(start, end, BLOCK):
+        hi = min(lo + BLOCK, end)
+        fill(
+            xs[2 * lo : 2 * hi], Fs[4 * lo : 4 * hi], domain[W * lo : W * hi],
+            origin[0], origin[1], inv_dx, nx, ny, 0.0, nx - 1.0, 0.0, ny - 1.0, table, node,
+        )  # fmt: skip
+        for q in range(np.uint64(hi - lo)):
+            vx = vy = ax = ay = 0.0
+            for k in range(np.uint64(K)):
+                i = np.uint64(node[k * B + q])
+                N = table[k * B + q]
+                vx += N * motion[i, 0]
+                vy += N * motion[i, 1]
+                ax += N * motion[i, 2]
+                ay += N * motion[i, 3]
+            p = np.uint64(lo) + q
+            values[p, 0] = vx
+            values[p, 1] = vy
+            values[p, 2] = ax
+            values[p, 3] = ay
+
+
+@kernel(nothing(Fill, i8, i8, F2, F3, F1, F1, f8, i8, i8, F2, F2), parallel=True)
+def collect_all(fill, K, W, x, F, domain, origin, inv_dx, nx, ny, motion, values):
+    """values (P,4) = sum N motion."""
+    for c in prange((x.shape[0] + CHUNK - 1) // CHUNK):
+        start = c * CHUNK
+        end = min(x.shape[0], start + CHUNK)
+        collect_chunk(fill, K, W, start, end, x, F, domain, origin, inv_dx, nx, ny, motion, values)
+
+
+@kernel(i8(Fill, i8, i8, i8, i8, F2, F3, F1, F1, f8, i8, i8, F2, F2, f8, I1))
+def advect_chunk(fill, K, W, start, end, x, F, domain, origin, inv_dx, nx, ny, motion, strain, dt, crossed):
+    """The particles start ... end-1; returns and counts as transfer.g2p_chunk."""
+    xs = x.reshape(-1)
+    Fs = F.reshape(-1)
+    table = np.empty(3 * K * BLOCK)
+    node = np.empty(K * BLOCK, np.int64)
+    before = np.zeros(2 * BLOCK)
+    after = np.zeros(2 * BLOCK)
+    dNx = np.uint64(K * BLOCK)
+    dNy = np.uint64(2 * K * BLOCK)
+    lost = -1
+    for lo in range(start, end, BLOCK):
+        hi = min(lo + BLOCK, end)
+        fill(
+            xs[2 * lo : 2 * hi], Fs[4 * lo : 4 * hi], domain[W * lo : W * hi],
+            origin[0], origin[1], inv_dx, nx, ny, 0.0, nx - 1.0, 0.0, ny - 1.0, table, node,
+        )  # fmt: skip
+        cells_of(xs[2 * lo : 2 * hi], origin[0], origin[1], inv_dx, before)
+        for q in range(np.uint64(hi - lo)):
+            p = np.uint64(lo) + q
+            vx = vy = Lxx = Lxy = Lyx = Lyy = 0.0
+            for k in range(np.uint64(K)):
+                at = k * B + q
+                i = np.uint64(node[at])
+                vx += table[at] * motion[i, 0]
+                vy += table[at] * motion[i, 1]
+                Lxx += strain[i, 0] * table[at + dNx]
+                Lxy += strain[i, 0] * table[at + dNy]
+                Lyx += strain[i, 1] * table[at + dNx]
+                Lyy += strain[i, 1] * table[at + dNy]
+            x[p, 0] += dt * vx
+            x[p, 1] += dt * vy
+            Fxx = F[p, 0, 0]
+            Fxy = F[p, 0, 1]
+            Fyx = F[p, 1, 0]
+            Fyy = F[p, 1, 1]
+            F[p, 0, 0] = Fxx + dt * (Lxx * Fxx + Lxy * Fyx)
+            F[p, 0, 1] = Fxy + dt * (Lxx * Fxy + Lxy * Fyy)
+            F[p, 1, 0] = Fyx + dt * (Lyx * Fxx + Lyy * Fyx)
+            F[p, 1, 1] = Fyy + dt * (Lyx * Fxy + Lyy * Fyy)
+        cells_of(xs[2 * lo : 2 * hi], origin[0], origin[1], inv_dx, after)
+        for b in range(hi - lo):
+            crossed[0] += int(before[b] != after[b]) + int(before[BLOCK + b] != after[BLOCK + b])
+        if lost < 0 and not invertible(Fs[4 * lo : 4 * hi]):
+            lost = lo
+    return lost
+
+
+@kernel(nothing(Fill, i8, i8, F2, F3, F1, F1, f8, i8, i8, F2, F2, f8, I1, I1), parallel=True)
+def advect_all(fill, K, W, x, F, domain, origin, inv_dx, nx, ny, motion, strain, dt, lost, crossed):
+    """x += dt sum N motion and F <- (I + dt L) F, L = sum strain dN; `lost` and `crossed` as in transfer.g2p."""
+    for c in prange(lost.shape[0]):
+        start = c * CHUNK
+        end = min(x.shape[0], start + CHUNK)
+        lost[c] = advect_chunk(
+            fill, K, W, start, end, x, F, domain, origin, inv_dx, nx, ny, motion, strain, dt, crossed[c : c + 1]
+        )
+
+
+def spread(model: "Model", values: Floats) -> Floats:
+    """Momentum at the nodes, the first columns of (n,4), of particles with velocities `values` (P,2)."""
+    g, p, basis, out = model.grid, model.particles, model.basis, np.zeros_like(model.grid.given)
+    spread_all(
+        basis.fill, basis.support, basis.width, model.slabs.start, p.x, p.F, p.m, np.ascontiguousarray(values),
+        p.domain.ravel(), g.origin, 1.0 / g.dx, g.nx, g.ny, out,
+    )  # fmt: skip
+    return out
+
+
+def collect(model: "Model", motion: Floats) -> Floats:
+    """Velocity and acceleration (P,4) of the grid, given at its nodes (n,4), where the particles are."""
+    g, p, basis, values = model.grid, model.particles, model.basis, np.empty((len(model.particles), 4))
+    collect_all(
+        basis.fill, basis.support, basis.width, p.x, p.F, p.domain.ravel(), g.origin, 1.0 / g.dx, g.nx, g.ny, motion,
+        values,
+    )  # fmt: skip
+    return values
+
+
+def advect(model: "Model", motion: Floats, strain: Floats) -> None:
+    """Places move with the velocities `motion`, F with the gradient of `strain`; both (n,4), one pass."""
+    g, p, basis = model.grid, model.particles, model.basis
+    advect_all(
+        basis.fill, basis.support, basis.width, p.x, p.F, p.domain.ravel(), g.origin, 1.0 / g.dx, g.nx, g.ny, motion,
+        strain, model.dt, model.lost, model.crossed,
+    )  # fmt: skip
+
+
+def lumped(model: "Model", momentum: Floats) -> Floats:
+    """Momentum over mass, (n,2), zero at nodes of no mass; walls are not looked at."""
+    mass = model.grid.mass[:, None]
+    velocity: Floats = np.divide(momentum[:, :2], mass, out=np.zeros((len(mass), 2)), where=mass > model.cutoff)
+    return velocity
+
+
+def walled(model: "Model", momentum: Floats, before: bool = False) -> Floats:
+    """The same as (n,4), with the walls' velocities at the end of the step, or before it."""
+    g, w, velocity = model.grid, model.walls, np.empty_like(momentum)
+    value = w.value - model.dt * w.rate if before else w.value
+    solve(g.mass, momentum, velocity, w.held, value, w.rate, 0.0, model.cutoff, g.ny)
+    return velocity

@@ -1,0 +1,111 @@
+"""The registry: nothing the library ships is without an expectation, and none is applied where it does not hold."""
+
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from cases.expectations import JUDGED_PPC, REGISTERED, STALL, expected, registry
+from cases.methods_study import LEVELS, QUICK, Comparison, build_methods, everything
+from cases.mms_study import Sweep, build, canonical
+from cases.study import QUANTITIES
+from solver.plugins import MATERIALS, METHODS, SOLUTIONS, available, create
+from verify.main import app
+
+OWN = str(Path(__file__).with_name("own_solution.py"))
+LAW = "neo_hookean"
+
+
+def of(method: str, solution: str, quantity: str = "u", ppc: int = 4, material: str = "", norm: str = "rms"):
+    """The expectation as a study asks for it, with canonical names."""
+    spec = canonical(SOLUTIONS, solution)
+    law = canonical(MATERIALS, material or create(SOLUTIONS, solution).material)
+    return expected(method, spec, law, ppc, quantity, norm)
+
+
+@pytest.mark.parametrize("solution", available(SOLUTIONS))
+@pytest.mark.parametrize("method", available(METHODS))
+def test_everything_shipped_is_registered_with_its_source(method: str, solution: str) -> None:
+    for quantity in QUANTITIES:
+        for ppc in JUDGED_PPC:
+            found = of(method, solution, quantity, ppc)
+            assert found is not None, f"register what {method} does on {solution}: cases/expectations.py"
+            assert found.source
+
+
+def test_the_registry_names_nothing_else() -> None:
+    assert set(REGISTERED) == {*available(SOLUTIONS), "small amplitude"}
+    assert all(set(methods) == set(available(METHODS)) for methods in REGISTERED.values())
+    assert len(list(registry())) == len(REGISTERED) * len(available(METHODS)) * len(QUANTITIES)
+
+
+@pytest.mark.parametrize("solution", ["axis_aligned:A=1e-6", "clamped_shear:G=1e-6"])
+@pytest.mark.parametrize("method", available(METHODS))
+def test_at_small_amplitude_every_method_is_of_second_order(method: str, solution: str) -> None:
+    found = of(method, solution)
+    assert found is not None
+    assert found.order == 2
+
+
+def test_kinds() -> None:
+    assert of("mpm", "axis_aligned").kind == "diverges"
+    assert of("cpdi", "axis_aligned").kind == "order 2"
+    assert of("cpdi", "axis_aligned").constant == 1.127e-5
+    assert (of("gimp", "bar").kind, of("gimp", "bar").stall) == ("stalls", STALL)
+    assert of("cpgimp", "generalised_vortex").lost == "no width"
+    assert of("cpdi", "clamped_shear", "F").order == pytest.approx(1.65)
+
+
+def test_where_nothing_is_expected() -> None:
+    """Another norm or particle count; stalls with parameters of one's own; a ring whose edges carry traction."""
+    assert of("cpdi", "axis_aligned", norm="printed") is None
+    assert of("cpdi", "axis_aligned", ppc=1) is None
+    assert of("gimp", "axis_aligned:phase=0.5") is None
+    assert of("cpdi", "axis_aligned:phase=0.5").order == 2
+    assert of("cpdi", "axis_aligned:phase=0.5").constant is None
+    assert of("cpdi", "expanding_ring", material=LAW) is None
+    assert of("cpdi", "axis_aligned", material="linear_elastic") is None
+
+
+def test_an_own_solution_has_the_order_of_its_file(tmp_path: Path) -> None:
+    assert of("cpdi", OWN) is None
+    declares = tmp_path / "declares.py"
+    declares.write_text(Path(OWN).read_text().replace('"speed": 100}', '"speed": 100, "order": 1.5}'))
+    assert of("cpdi", str(declares)).order == 1.5
+    assert of("cpdi", str(declares), "v") is None
+
+
+def test_only_u_in_rms_is_judged() -> None:
+    study = build(Sweep(cells=(8, 16, 32, 64), ppc=(4,)), "verify", "x")
+    assert [(d.quantity, d.norm) for d in study.declared if d.judged] == [("u", "rms")]
+    assert {d.quantity for d in study.declared if d.expectation} == set(QUANTITIES)
+    assert [r.courant for r in study.runs].count(0.2) == 1  # half the time step, for what is judged
+
+
+def test_the_study_of_all_methods_judges_each_on_each_solution() -> None:
+    study = build_methods(everything(), "verify methods", "methods")
+    judged = [(d.method, d.solution) for d in study.declared if d.judged]
+    assert len(judged) == len(set(judged)) == len(available(METHODS)) * len(LEVELS)
+    assert len({run.digest for run in study.runs}) == len(study.runs)
+    assert all(len(cells) >= 4 for cells in (*LEVELS.values(), *QUICK.values()))
+
+
+def test_a_comparison_of_two() -> None:
+    study = build_methods(Comparison(("cpdi", "gimp"), {"bar": (8, 16)}), "verify methods", "two")
+    assert {(r.method, r.cells, r.courant) for r in study.runs} == {
+        ("cpdi", 8, 0.4), ("cpdi", 16, 0.4), ("gimp", 8, 0.4), ("gimp", 16, 0.4), ("cpdi", 16, 0.2)
+    }  # fmt: skip
+
+
+def test_the_table_and_its_json() -> None:
+    import json
+
+    runner = CliRunner()
+    text = runner.invoke(app, ["expectations", "--solution", "bar"]).output
+    assert "diverges" in text
+    assert "2 (1.8\N{EN DASH}2.3)" in text
+    entries = json.loads(runner.invoke(app, ["expectations", "--method", "mpm", "--json"]).output)
+    assert len(entries) == len(REGISTERED) * len(QUANTITIES)
+    assert {e["expected"] for e in entries if e["solution"] == "bar"} == {"diverges"}
+    refused = runner.invoke(app, ["expectations", "--method", "none"])
+    assert refused.exit_code != 0

@@ -1,0 +1,336 @@
+"""Where orders fall, and why: each cause can be named and can be absent, on made numbers and on real runs."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import cache
+
+import fixtures_study as fixtures
+import pytest
+
+from cases.library import mms
+from cases.mms_study import Sweep, build
+from cases.order import Expectation
+from cases.stall import Cause, Finding, Measured, Peer, Stall, explain
+from cases.study import Declared, Failure, Result, Run, Study
+from cases.verdicts import Finding as Found
+from cases.verdicts import doublings, findings
+from reports import stalls as told
+from solver._jit import use_threads
+
+CELLS = (8, 16, 32, 64)
+AT_64 = 6.4e-3 / 64  # what second order gives there
+
+
+def made(**changes: object) -> Measured:
+    """A stall with an excess of 3/4 of the finest error, and nothing measured that explains it."""
+    still = Measured(CELLS, (6.4e-3, 1.6e-3, 6e-4, 4 * AT_64), (0.0,) * 4, (None,) * 4, 4, 1e-14, 4 * AT_64)
+    return replace(still, **changes)
+
+
+def stall(**changes: object) -> Stall:
+    found = explain(made(**changes))
+    assert found is not None
+    return found
+
+
+def cause(found: Stall, word: str) -> Cause:
+    (one,) = [c for c in found.causes if word in c.name]
+    return one
+
+
+def names(found: Stall) -> list[str]:
+    return [c.name for c in found.named]
+
+
+# ---- is there a stall?
+
+
+@pytest.mark.parametrize(
+    "orders",
+    [(2.1, 1.98, 2.0), (1.49, 1.83, 1.91), (1.79, 2.14, 2.0), (1.05, 1.02, 1.0), (2.2, 1.9, 1.85), (1.5,), (2.0, 1.95)],
+)
+def test_an_order_as_expected_or_without_a_fall_is_no_stall(orders: tuple[float, ...]) -> None:
+    assert explain(falling(orders)) is None
+
+
+@pytest.mark.parametrize("orders", [(1.44, 1.09, 0.72), (1.89, 1.12, -0.27), (2.2, 1.91, 1.69), (-0.48,), (0.3, 0.4)])
+def test_an_order_that_falls_is_one(orders: tuple[float, ...]) -> None:
+    found = explain(falling(orders))
+    assert found is not None
+    assert found.order == pytest.approx(orders[-1])
+    assert found.before == pytest.approx(orders[:-1])
+
+
+def falling(orders: tuple[float, ...]) -> Measured:
+    errors = [1e-2]
+    for order in orders:
+        errors.append(errors[-1] / 2**order)
+    count = len(errors)
+    return Measured(tuple(8 * 2**i for i in range(count)), tuple(errors), (0.0,) * count, (None,) * count, 4)
+
+
+def test_where_is_said() -> None:
+    assert stall().where == "from 32 to 64 cells the order is 0.58; 2.00, 1.42 before"
+
+
+@pytest.mark.parametrize("registered", [(0.7, 0.3), (2.0, 1.5)])
+def test_an_order_that_was_registered_is_no_stall(registered: tuple[float, float]) -> None:
+    """The order of `made` on its finest cells is 0.58."""
+    assert explain(made(order=registered[0], below=registered[1])) is None
+    assert explain(made(order=registered[0], below=0.05)) is not None
+
+
+def test_excess_is_what_the_usual_order_leaves() -> None:
+    assert made().excess == pytest.approx([0, 0, 2e-4, 3 * AT_64])
+
+
+def test_an_error_of_zero_is_no_stall() -> None:
+    assert explain(made(errors=(1e-3, 1e-4, 0.0, 0.0))) is None
+
+
+# ---- each cause, named and absent
+
+
+def test_nothing_is_named_where_nothing_explains() -> None:
+    found = stall()
+    assert names(found) == []
+    assert found.why[0] == "The evidence does not name a cause."
+    assert {c.finding for c in found.causes} == {Finding.EXCLUDED, Finding.UNKNOWN}
+    assert "Not measured: quadrature" in " ".join(found.why)
+
+
+@pytest.mark.parametrize(
+    ("ppc", "share", "weight"),
+    [(9, 0.4, 0.8), (9, 0.7, 0.4), (9, 0.97, 0.04), (9, 1.2, 0.0), (1, 2.0, 2 / 3), (1, 1.05, 0.0635)],
+)
+def test_particles(ppc: int, share: float, weight: float) -> None:
+    """Named if another count changes the error by as much as the excess; fewer particles where none has more."""
+    found = stall(other=(ppc, (6e-4 * share, 4 * AT_64 * share)))
+    one = cause(found, "quadrature")
+    assert one.weight == pytest.approx(weight, abs=1e-4)
+    assert (one.name in names(found)) == (weight >= 0.5)
+    assert one.finding is (Finding.SHOWN if weight >= 0.25 else Finding.EXCLUDED)
+    assert f"with {ppc} per cell in place of 4" in one.text
+    assert any(text.startswith("In part quadrature") for text in found.why) == (0.25 <= weight < 0.5)
+
+
+@pytest.mark.parametrize(
+    ("gaps", "named"),
+    [
+        ((0.2, 0.18, 0.17, 0.19), True),  # a domain of fixed size
+        ((0.1, 0.05, 0.025, 0.0125), False),  # a domain that follows the motion
+        ((0.4, 0.2, 0.1, 0.05), False),
+        ((0.01, 0.01, 0.01, 0.01), False),  # flat, and too small
+        ((None,) * 4, False),
+    ],
+)
+def test_gaps(gaps: tuple[float | None, ...], named: bool) -> None:
+    found = stall(gaps=gaps, peers=(Peer("other", 2.0, 0.0, 0.01), Peer("worse", 0.5, 0.0, 0.01)))
+    one = cause(found, "gaps")
+    assert (one.name in names(found)) == named
+    assert one.finding is (Finding.PRESENT if named else Finding.EXCLUDED)
+    assert ("other has 1.0% and order 2.00" in one.text) == (gaps[-1] is not None and gaps[-1] >= 0.02)
+
+
+@pytest.mark.parametrize(
+    ("halved", "finding", "named"),
+    [
+        (0.5, Finding.SHOWN, True),
+        (0.7, Finding.SHOWN, False),
+        (1.0, Finding.EXCLUDED, False),
+        (1.3, Finding.EXCLUDED, False),
+    ],
+)
+def test_time_step(halved: float, finding: Finding, named: bool) -> None:
+    found = stall(halved=4 * AT_64 * halved)
+    one = cause(found, "time step")
+    assert one.finding is finding
+    assert (one.name in names(found)) == named
+    assert f"changes the finest error by {halved - 1:+.1%}" in one.text
+
+
+def test_time_step_that_nobody_halved() -> None:
+    assert cause(stall(halved=None), "time step").finding is Finding.UNKNOWN
+
+
+@pytest.mark.parametrize(("floor", "named"), [(1e-14, False), (1e-7, False), (1e-5, True)])
+def test_round_off(floor: float, named: bool) -> None:
+    found = stall(floor=floor)
+    assert ("round-off" in names(found)) == named
+
+
+def test_crossings_are_named_where_the_excess_grows_with_them() -> None:
+    found = stall(crossings=(2.0, 4.0, 8.0, 16.0), errors=(6.4e-3, 1.6e-3, 5e-4, 4 * AT_64), gaps=(0.2,) * 4)
+    assert names(found) == ["cell crossings", "gaps and overlaps between domains"]
+    assert "they grow 2.0-fold and the error beyond order 2 3.0-fold" in cause(found, "crossings").text
+
+
+def test_crossings_explain_only_what_others_leave() -> None:
+    """The excess is 3e-4 on both of the finest levels: it does not grow with the crossings."""
+    steady = {"crossings": (2.0, 4.0, 8.0, 16.0), "errors": (6.4e-3, 1.6e-3, 7e-4, 4 * AT_64)}
+    alone, beside = stall(**steady), stall(**steady, gaps=(0.2,) * 4)
+    assert names(alone) == ["cell crossings"]
+    assert names(beside) == ["gaps and overlaps between domains"]
+    assert any(text.startswith("Measured too: cell crossings") for text in beside.why)
+
+
+def test_without_crossings_they_are_excluded() -> None:
+    assert cause(stall(crossings=(0.0, 0.0, 0.1, 0.2)), "crossings").finding is Finding.EXCLUDED
+
+
+def test_a_method_that_crosses_as_often_and_converges_is_named() -> None:
+    peers = (Peer("good", 1.99, 16.0, None), Peer("calm", 2.0, 1.0, None), Peer("bad", 0.3, 16.0, None))
+    text = cause(stall(crossings=(2.0, 4.0, 8.0, 16.0), peers=peers), "crossings").text
+    assert text.endswith("good passes 16.0 and has order 1.99")
+
+
+def test_lost_runs_are_told() -> None:
+    lost = "the run with 128 cells ended: det F <= 0 at step 21"
+    assert stall(lost=lost).where.endswith(lost)
+    converged = explain(replace(falling((2.0, 2.0)), lost=lost, crossings=(1.0, 2.0, 4.0)))
+    assert converged is not None
+    assert converged.where == "the finest run that finished has 32 cells"
+    assert names(converged) == ["a lost run"]
+    assert explain(Measured((), (), (), (), 4, lost=lost)) is None
+
+
+# ---- from Results
+
+
+@pytest.fixture
+def sources() -> Iterator[None]:
+    with fixtures.sources():
+        yield
+
+
+def recorded(method: str, ppc: int) -> Found:
+    runs = tuple(Run(method, "axis_aligned", "neo_hookean", cells, ppc, 0.4) for cells in (8, 16, 32, 64, 128))
+    declared = Declared(method, "axis_aligned", ppc, "u", "rms", True, Expectation(None))
+    (found,) = findings(Study("mms", "t", "c", runs, (declared,)), {r.digest: fixtures._result(r) for r in runs})
+    return found
+
+
+def test_recorded_studies(sources: None) -> None:
+    """CPDI converges; classical MPM grows until particles lose their det F."""
+    assert recorded("cpdi", 4).stall is None
+    found = recorded("mpm", 4).stall
+    assert found is not None
+    assert (
+        "from 32 to 64 cells the order is -0.85; -0.48, -1.09 before; the run with 128 cells ended: det F"
+        in found.where
+    )
+    alone = recorded("mpm", 1).stall  # of five runs one finished
+    assert alone is not None
+    assert alone.order is None
+    assert "the run with 16 cells ended" in alone.why[0]
+
+
+def test_only_the_displacement_has_a_stall(sources: None) -> None:
+    run = Run("mpm", "axis_aligned", "neo_hookean", 8, 4, 0.4)
+    runs = tuple(replace(run, cells=cells) for cells in (8, 16, 32))
+    declared = [
+        Declared("mpm", "axis_aligned", 4, q, n, False, None) for q, n in (("u", "rms"), ("u", "max"), ("v", "rms"))
+    ]
+    found = findings(Study("mms", "t", "c", runs, tuple(declared)), {r.digest: fixtures._result(r) for r in runs})
+    assert [f.stall is not None for f in found] == [True, False, False]
+
+
+def test_a_replicate_that_failed_is_no_lost_cell_size(sources: None) -> None:
+    """The unshifted run has no error then, and what it passed is still measured."""
+    run = Run("cpdi", "axis_aligned", "neo_hookean", 8, 4, 0.4)
+    runs = [replace(run, cells=cells) for cells in (8, 16, 32)]
+    shifted = [replace(r, offset=(0.0, 0.25)) for r in runs]
+    results = {r.digest: fixtures._result(r) for r in (*runs, *shifted)}
+    lost = results[shifted[2].digest]
+    results[shifted[2].digest] = replace(lost, status="failed", errors={}, failure=Failure("det F <= 0", 3))
+    declared = Declared("cpdi", "axis_aligned", 4, "u", "rms", False, None)
+    (found,) = findings(Study("mms", "t", "c", (*runs, *shifted), (declared,)), results)
+    assert found.levels[2].ended == "det F <= 0 at step 3, replicate 2"
+    assert found.crossings == pytest.approx((2.0, 4.0, 8.0))
+
+
+def test_orders_over_less_than_half_the_cells_do_not_make_a_stall(sources: None) -> None:
+    """Scatter of 4 % makes 1.6 of an order of 2 between 48 and 64 cells; from 48 to 96 it is 2."""
+    scatter = {12: 1.0, 16: 0.96, 24: 1.0, 32: 1.0, 48: 1.0, 64: 1.04, 96: 1.0}
+    runs = tuple(Run("cpdi", "axis_aligned", "neo_hookean", cells, 4, 0.4) for cells in scatter)
+
+    def study(factor: dict[int, float]) -> Found:
+        results = {}
+        for run in runs:
+            result = fixtures._result(replace(run, cells=8))
+            errors = {q: dict.fromkeys(norms, factor[run.cells] / run.cells**2) for q, norms in result.errors.items()}
+            results[run.digest] = replace(result, run=run, digest=run.digest, errors=errors)
+        declared = Declared("cpdi", "axis_aligned", 4, "u", "rms", False, None)
+        return findings(Study("t", "t", "c", runs, (declared,)), results)[0]
+
+    for last in (1.0, 1.04):  # 64 to 96 cells: 2.1, and 1.86 after 2.14
+        found = study({**scatter, 96: last})
+        assert min(found.verdict.local_orders) < 1.9
+        assert [result.run.cells for _, result in doublings(found)] == [12, 24, 48, 96]
+        assert found.stall is None
+    stalled = study({**scatter, 96: 1.5}).stall
+    assert stalled is not None
+    assert stalled.where.startswith("from 48 to 96 cells the order is 1.42; 2.00, 2.00 before")
+
+
+# ---- real runs, small: 8, 16 and 32 cells with 4 and 9 particles each
+
+
+@cache
+def real(solution: str = "axis_aligned") -> dict[tuple[str, int], Found]:
+    use_threads(1)
+    methods = ("mpm", "gimp", "cpgimp", "cpdi", "bspline2")
+    study = build(Sweep(methods, solution, cells=(8, 16, 32), ppc=(4, 9)), "verify", "t")
+    results: dict[str, Result] = {run.digest: mms.execute(run)[0] for run in study.runs}
+    found = [f for f in findings(study, results) if (f.declared.quantity, f.declared.norm) == ("u", "rms")]
+    return {(f.declared.method, f.declared.ppc): f for f in found}
+
+
+@pytest.mark.parametrize(
+    ("method", "named", "not_named"),
+    [
+        ("mpm", "cell crossings", "gaps and overlaps between domains"),
+        ("gimp", "gaps and overlaps between domains", "cell crossings"),
+        ("bspline2", "quadrature with so few particles", "gaps and overlaps between domains"),
+        ("cpgimp", None, None),
+        ("cpdi", None, None),
+    ],
+)
+def test_real_runs(method: str, named: str | None, not_named: str | None) -> None:
+    """CPDI and cpGIMP cross as many faces as GIMP and keep their order: their domains have no gaps."""
+    found = real()[method, 4]
+    assert found.crossings == pytest.approx((2, 4, 8), rel=0.3)
+    if named is None:
+        assert found.stall is None
+    else:
+        assert found.stall is not None
+        assert named in names(found.stall)
+        assert not_named not in names(found.stall)
+
+
+def test_nothing_stalls_where_nothing_crosses() -> None:
+    """The same methods at an amplitude at which no particle reaches a face."""
+    for found in real("axis_aligned:A=1e-06").values():
+        assert found.stall is None
+        assert found.crossings == (0, 0, 0)
+        assert found.verdict.local_orders[-1] > 1.8
+
+
+def test_gaps_of_fixed_domains_stay_and_those_of_convected_ones_close() -> None:
+    fixed, convected = ([r.gap for r in real()[method, 4].results if r] for method in ("gimp", "cpdi"))
+    assert fixed[2] is not None
+    assert fixed[2] > 0.15
+    assert convected[0] is not None
+    assert convected[2] is not None
+    assert convected[2] < 0.3 * convected[0]
+
+
+# ---- in words
+
+
+def test_sentences_for_readers() -> None:
+    found = real()["gimp", 4]
+    said = told.short(found)
+    assert said.startswith("From 16 to 32 cells the order is 1.09; 1.44 before.")
+    assert said.endswith("By the numbers: quadrature with so few particles and gaps and overlaps between domains.")
+    assert told.short(real()["cpdi", 4]) == ""
