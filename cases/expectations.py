@@ -57,6 +57,15 @@ REGISTERED: dict[str, dict[str, str]] = {
         "bspline2": "stalls 64",
         "bspline3": "stalls 96",
     },
+    "localised": {
+        "mpm": "diverges",
+        "gimp": "stalls 96",
+        "cpgimp": "2 1.7 1.35 1.45",
+        "cpdi": "2 1.8 1.35 1.45",
+        "cpdi2": "2 1.8 1.35 1.45",
+        "bspline2": "stalls 64",
+        "bspline3": "stalls 128",
+    },
     "expanding_ring": {
         "mpm": "lost det F",
         "gimp": "stalls 64",

@@ -44,7 +44,11 @@ def head(run: Run) -> Head:
 
 
 def collect(runs: Sequence[Run]) -> list[Series]:
-    """Every series: by solution, methods in the order of the study, fewest particles first."""
+    """Every series: by solution, methods in the order of the study, fewest particles first.
+
+    Of a study with several layouts, those of the first one.
+    """
+    runs = [run for run in runs if run.layout == runs[0].layout]
     mine: dict[Head, list[Run]] = {}
     for run in runs:
         mine.setdefault(head(run), []).append(run)

@@ -14,6 +14,7 @@ from cases.study import QUANTITIES, Run
 from reports import audited, show, show_axes, show_runs, style, tables, words
 from reports.cards import cards, summary
 from reports.cost import compares
+from reports.figures import graded
 from reports.figures.convergence import convergence, methods
 from reports.figures.cost import cost_figure
 from reports.figures.error_field import CELLS, PPC, choose, error_field
@@ -84,6 +85,7 @@ def _page(record: Record, folder: Path, field: tuple[int, int]) -> str:
         stalls=stalls(record),
         cost=_cost(record, folder),
         overview=overview,
+        graded=graded if graded.found(record) else None,
         looked=looked(record),
         quantities=QUANTITIES,
         words=words,
@@ -104,6 +106,8 @@ def _solution(record: Record, solution: str, folder: Path, field: tuple[int, int
         "position": _maybe(add, "position", position(record, solution), PLACE),
         "particles": [add(f"particles_{m}", drawn, f"{words.method(m)}: {COUNT}") for m, drawn in several.items()],
     }
+    if graded.found(record):
+        images["graded"] = add("graded", graded.figure(record, solution), " ".join(graded.statements(record)))
     return images | {
         "name": solution,
         "panels": [

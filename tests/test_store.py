@@ -17,7 +17,7 @@ from cases.store import Store, StoreError
 from cases.study import Declared, Failure, Result, Run, Study, sources_digest
 
 RUN = Run("cpdi", "axis_aligned", "neo_hookean", 8, 4, 0.4)
-OTHER = {str: "other", int: 7, float: 0.125}
+OTHER = {str: "other", int: 7, float: 0.125, tuple: (0.25, 0.0)}
 
 
 @pytest.fixture

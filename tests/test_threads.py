@@ -1,5 +1,6 @@
 """Slabs and threads: how particles are shared out changes no bit, and how they are presented none but the last."""
 
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,7 @@ from solver._jit import use_threads
 from solver.boundary import box
 from solver.layout import rectangle
 from solver.material.neo_hookean import NeoHookean
-from solver.plugins import available, create, load
+from solver.plugins import SOLUTIONS, available, create, load
 from solver.slabs import WIDTH, Slabs
 from solver.state import Grid, Particles
 from solver.step import Model, RunFailed, Scheme, advance, particles_to_grid
@@ -158,9 +159,10 @@ def after(method: str, solution: str, threads: int, **scheme: str) -> dict[str, 
     """Bits of a run with 6400 particles, more than one chunk, and of its norms."""
     use_threads(threads)
     assert numba.get_num_threads() == threads
-    m, comparison, _ = setup(Run(method, solution, "neo_hookean", 40, 4, 0.4, **scheme))
-    for _ in range(45):
-        advance(m, comparison)
+    m, comparison, _ = setup(Run(method, solution, load(SOLUTIONS, solution).material, 40, 4, 0.4, **scheme))
+    with suppress(RunFailed):  # classical MPM ends soon on the rings, at the same step
+        for _ in range(45):
+            advance(m, comparison)
     comparison(m.particles, m.time)
     bits = {array: m.particles.in_initial_order(array).tobytes() for array in ("x", "v", "F", "sigma", "b", "B")}
     use_threads(1)

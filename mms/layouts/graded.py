@@ -1,0 +1,17 @@
+"""As many particles as the uniform layout has, moved to where strain is expected; see mms/grading.py."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from mms.grading import Grading
+from mms.manufacture import Manufactured
+from solver.layout import Layout, Offset
+
+
+@dataclass(frozen=True)
+class Graded(Grading):
+    """`ppc` is the mean number in a cell."""
+
+    def __call__(self, solution: Any, exact: Manufactured, dx: float, ppc: int, offset: Offset) -> Layout:
+        """Rectangles. Raises ValueError for a body that is none."""
+        return self.lay(solution, exact, dx, ppc, offset, fewer=False)

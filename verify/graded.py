@@ -1,0 +1,107 @@
+"""`verify graded`: uniform layouts of particles against layouts that are finer where strain is expected."""
+
+import shlex
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from solver.plugins import METHODS, SOLUTIONS
+from verify.choices import choices, completion, integers
+from verify.mms import repeatable
+
+if TYPE_CHECKING:
+    from cases.graded_study import Plan
+
+
+def graded(
+    method: Annotated[
+        list[str] | None,
+        typer.Option(
+            help=f"{choices(METHODS)}; may be repeated.",
+            autocompletion=completion(METHODS),
+            show_default="cpdi, gimp and mpm",
+        ),
+    ] = None,
+    solution: Annotated[
+        list[str] | None,
+        typer.Option(
+            help=f"{choices(SOLUTIONS)}; may be repeated; on rectangles only.",
+            autocompletion=completion(SOLUTIONS),
+            show_default="localised and axis_aligned",
+        ),
+    ] = None,
+    cells: Annotated[str, typer.Option(help="Cells along a side of the domain.")] = "16,32,64",
+    ppc: Annotated[str, typer.Option(help="Particles per cell of the uniform layouts, square numbers.")] = "1,4,9",
+    contrast: Annotated[
+        float, typer.Option(help="Particles per length where strain is largest, over those where there is none.")
+    ] = 2.0,
+    power: Annotated[float, typer.Option(help="Of the strain that particles per length follow.")] = 0.25,
+    jobs: Annotated[int | None, typer.Option(help="Runs at a time.", show_default="processors")] = None,
+    out: Annotated[Path | None, typer.Option(help="Study folder.", show_default="results/graded")] = None,
+    json_output: Annotated[
+        bool, typer.Option("--json", help="One JSON document on standard output, nothing else.")
+    ] = False,
+) -> int:
+    """Error against cost of uniform, graded and thinned layouts. Nothing is judged: exit code 3."""
+    from verify.conduct import Settings, conduct, usage
+
+    with usage():
+        from cases.graded_study import Plan, build_graded
+
+        usual = Plan()
+        plan = Plan(
+            tuple(dict.fromkeys(method or usual.methods)),
+            tuple(dict.fromkeys(solution or usual.solutions)),
+            integers(cells, "--cells"),
+            integers(ppc, "--ppc"),
+            contrast,
+            power,
+        )
+        study = build_graded(plan, "verify " + shlex.join(repeatable(sys.argv[1:])), name(plan))
+        if jobs is not None and jobs < 1:
+            raise ValueError("--jobs takes whole numbers from 1 on")
+    folder = out or Path("results") / study.name
+    code = conduct(study, Settings(folder, jobs, 1, json_output))
+    if not json_output:
+        show(folder)
+    return code
+
+
+def name(plan: "Plan") -> str:
+    """Name of the study: what is not as usual in it."""
+    import re
+    from dataclasses import fields
+
+    words = ["graded"]
+    for item in fields(plan):
+        value = getattr(plan, item.name)
+        if value != item.default:
+            words += [item.name, *(map(str, value) if isinstance(value, tuple) else [f"{value:g}"])]
+    return re.sub(r"[^A-Za-z0-9.]+", "-", " ".join(words)).strip("-")[:120]
+
+
+def show(folder: Path) -> None:
+    """Print what graded and thinned layouts save."""
+    from rich.table import Table
+
+    from reports.figures.graded import COLUMNS, MEANING, statements, table
+    from reports.stored import read
+    from verify.output import printing
+    from verify.table import Listened
+
+    record, out = read(folder), Listened(highlight=False, soft_wrap=False)
+    if not out.is_terminal:
+        out.width = max(out.width, 130)
+    drawn = Table(box=None, pad_edge=False, header_style="dim")
+    for column in COLUMNS:
+        drawn.add_column(column, justify="left" if column in COLUMNS[:2] or column == "layout" else "right")
+    for row in table(record):
+        drawn.add_row(*row)
+    with printing():
+        out.print(drawn)
+        out.print(MEANING)
+        for quantity in ("u", "sigma"):
+            for sentence in statements(record, quantity):
+                out.print(sentence)
