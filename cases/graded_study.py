@@ -11,7 +11,7 @@ from itertools import pairwise
 from math import exp, log
 
 from cases.mms_study import Sweep, build, canonical
-from cases.study import Result, Run, Study
+from cases.study import Declared, Result, Run, Study
 from mms.layouts import LAYOUTS
 
 Results = Mapping[str, Result]
@@ -48,9 +48,11 @@ def build_graded(plan: Plan, command: str, name: str) -> Study:
         for layout, ppc in (("uniform", plan.ppc), *((layout, dense) for layout in spread))
     ]
     runs = tuple(run for part in parts for run in part.runs if run.courant == Sweep.courant)
-    declared = tuple(replace(d, judged=False) for part in parts for d in part.declared)
+    declared: dict[object, Declared] = {}  # of the uniform layout, which comes first: the others have the same names
+    for d in (d for part in parts for d in part.declared):
+        declared.setdefault((d.method, d.solution, d.ppc, d.quantity, d.norm), replace(d, judged=False))
     title = f"Uniform and graded layouts of particles on {' and '.join(plan.solutions)}"
-    return Study(name, title, command, runs, tuple(dict.fromkeys(declared)))
+    return Study(name, title, command, runs, tuple(declared.values()))
 
 
 def kind(run: Run) -> str:

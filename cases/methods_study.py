@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from cases.expectations import REGISTERED
 from cases.mms_study import Sweep, build
 from cases.study import Study
 from solver.plugins import METHODS, available
@@ -31,8 +32,9 @@ class Comparison:
 
 
 def everything() -> Comparison:
-    """Every basis there is, on every solution of LEVELS."""
-    return Comparison(tuple(available(METHODS)), LEVELS)
+    """Every basis there is, on every solution of LEVELS; those of the registry first, in its order."""
+    known = [method for method in REGISTERED["axis_aligned"] if method in available(METHODS)]
+    return Comparison(tuple(dict.fromkeys([*known, *available(METHODS)])), LEVELS)
 
 
 def build_methods(comparison: Comparison, command: str, name: str) -> Study:
@@ -43,5 +45,5 @@ def build_methods(comparison: Comparison, command: str, name: str) -> Study:
     ]
     runs = tuple(run for part in parts for run in part.runs)
     declared = tuple(d for part in parts for d in part.declared)
-    title = f"{len(comparison.methods)} methods on {len(parts)} manufactured solutions"
+    title = f"{len(comparison.methods)} methods on {', '.join(comparison.levels)}"
     return Study(name, title, command, runs, declared)

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from cases.store import Store, StoreError
 from cases.study import QUANTITIES, Run
-from reports import audited, show, show_axes, show_runs, style, tables, words
+from reports import audited, show, show_axes, show_graded, show_runs, style, tables, words
 from reports.cards import cards, summary
 from reports.cost import compares
 from reports.figures import graded
@@ -85,7 +85,7 @@ def _page(record: Record, folder: Path, field: tuple[int, int]) -> str:
         stalls=stalls(record),
         cost=_cost(record, folder),
         overview=overview,
-        graded=graded if graded.found(record) else None,
+        graded=show_graded if graded.found(record) else None,
         looked=looked(record),
         quantities=QUANTITIES,
         words=words,
@@ -107,7 +107,8 @@ def _solution(record: Record, solution: str, folder: Path, field: tuple[int, int
         "particles": [add(f"particles_{m}", drawn, f"{words.method(m)}: {COUNT}") for m, drawn in several.items()],
     }
     if graded.found(record):
-        images["graded"] = add("graded", graded.figure(record, solution), " ".join(graded.statements(record)))
+        alt = f"Error of u on {solution} against cost: uniform, graded and thinned layouts."
+        images["graded"] = add("graded", graded.figure(record, solution), alt)
     return images | {
         "name": solution,
         "panels": [

@@ -50,11 +50,13 @@ def conduct(study: Study, settings: Settings) -> int:
     with usage():
         from cases.store import Store
         from cases.verdicts import exit_code
+        from reports.cost import compares
         from reports.render import render
         from reports.stored import Record
         from verify.document import document
         from verify.junit import check_junit, write_junit
         from verify.output import printing
+        from verify.overview import show_overview
         from verify.table import show
 
         check_junit(settings.junit)
@@ -70,6 +72,8 @@ def conduct(study: Study, settings: Settings) -> int:
         with printing():
             if settings.json_output:
                 typer.echo(document(study, found, results, page))
+            elif compares(record):
+                show_overview(record, page)
             else:
                 show(study, found, page)
     return exit_code(found)

@@ -86,22 +86,20 @@ def show(folder: Path) -> None:
     """Print what graded and thinned layouts save."""
     from rich.table import Table
 
-    from reports.figures.graded import COLUMNS, MEANING, statements, table
+    from reports.show_graded import OVERVIEW, WHAT, overview
     from reports.stored import read
     from verify.output import printing
     from verify.table import Listened
 
-    record, out = read(folder), Listened(highlight=False, soft_wrap=False)
+    found, out = overview(read(folder)), Listened(highlight=False, soft_wrap=False)
     if not out.is_terminal:
-        out.width = max(out.width, 130)
+        out.width = max(out.width, 110)
     drawn = Table(box=None, pad_edge=False, header_style="dim")
-    for column in COLUMNS:
-        drawn.add_column(column, justify="left" if column in COLUMNS[:2] or column == "layout" else "right")
-    for row in table(record):
+    for column in OVERVIEW:
+        drawn.add_column(column, justify="left" if column in OVERVIEW[:4] else "right")
+    for row in found.rows:
         drawn.add_row(*row)
     with printing():
+        out.print(f"\n{found.caption}\n")
         out.print(drawn)
-        out.print(MEANING)
-        for quantity in ("u", "sigma"):
-            for sentence in statements(record, quantity):
-                out.print(sentence)
+        out.print(f"\n{WHAT}")
