@@ -78,7 +78,7 @@ REGISTERED: dict[str, dict[str, str]] = {
     "generalised_vortex": {
         "mpm": "lost det F",
         "gimp": "stalls 64",
-        "cpgimp": "lost no width",
+        "cpgimp": "lost wider than two cells",
         "cpdi": "2 1.9 1.6 1.9",
         "cpdi2": "2 2 1.6 1.9",
         "bspline2": "stalls 64",
@@ -103,15 +103,18 @@ REGISTERED: dict[str, dict[str, str]] = {
         "bspline3": "2 2 2 2",
     },
 }
+# With 9 particles per cell these still have order 2 on the finest grids that were run (96 cells), or have not settled:
+# their stall lies beyond, and nothing is registered of it.
+LATER_WITH_9 = {("cpgimp", "swirl"), ("gimp", "generalised_vortex")}
 OWN_MATERIAL = ("expanding_ring",)  # with another its edges are not free of traction, and no order is expected
+# Who says so: that u of this method converges at order 2, or does not, once particles cross cells.
 LITERATURE = {
-    "mpm": "Steffen, Kirby & Berzins 2008",
-    "gimp": "Wallstedt & Guilkey 2008",
-    "cpgimp": "Wallstedt & Guilkey 2008",
-    "cpdi": "Sadeghirad, Brannon & Burghardt 2011",
-    "cpdi2": "Sadeghirad, Brannon & Guilkey 2013",
-    "bspline2": "Tielen, Wobbes, Moeller & Beuth 2017",
-    "bspline3": "Steffen, Kirby & Berzins 2008",
+    ("mpm", "diverges"): "Steffen, Kirby & Berzins 2008",
+    ("mpm", "lost"): "Steffen, Kirby & Berzins 2008",
+    ("gimp", "stalls"): "Wallstedt & Guilkey 2008",
+    ("cpdi", "2"): "Sadeghirad, Brannon & Burghardt 2011",
+    ("cpdi2", "2"): "Sadeghirad, Brannon & Guilkey 2013",
+    ("bspline2", "stalls"): "Tielen, Wobbes, Moeller & Beuth 2017",
 }
 MEASURED = "measured, see ARCHITECTURE.md"
 
@@ -158,7 +161,8 @@ def registry() -> Iterator[Entry]:
 def registered(solution: str, method: str, quantity: str) -> Expectation:
     """The line of the registry. A measured order has a wide band: it still falls on the grids that it was seen on."""
     words = REGISTERED[solution][method].split()
-    source = f"{LITERATURE[method]}; {MEASURED}" if quantity == "u" else MEASURED
+    said = LITERATURE.get((method, words[0])) if quantity == "u" else None
+    source = f"{said}; {MEASURED}" if said else MEASURED
     match words:
         case ["diverges"]:
             return Expectation(None, source=source)
@@ -193,7 +197,7 @@ def expected(
     expectation, own = registered(regime, method, quantity), same(material, plugin.material)
     if (name in OWN_MATERIAL and not own) or (regime == name and solution != name and expectation.order is None):
         return None
-    if expectation.order is None and not own:
+    if expectation.order is None and (not own or (ppc == 9 and later_with_9(method, name, expectation))):
         return None
     h, error = (
         RECORDED.get((method, solution, ppc), (None, None)) if usual and own and quantity == "u" else (None, None)
@@ -201,10 +205,19 @@ def expected(
     return replace(expectation, constant_h=h, constant=error)
 
 
+def later_with_9(method: str, solution: str, expectation: Expectation) -> bool:
+    """Whether the stall was seen with 4 particles per cell alone."""
+    return expectation.stall is not None and (method == "bspline3" or (method, solution) in LATER_WITH_9)
+
+
 def small(solution: Any) -> bool:
-    """Whether no particle will cross a cell: an amplitude A or G that is next to nothing beside the body."""
-    sizes = [abs(getattr(solution, name)) for name in ("A", "G") if hasattr(solution, name)]
-    return bool(sizes) and max(sizes) <= SMALL * float(solution.upper[0] - solution.lower[0])
+    """Whether no particle will cross a cell: amplitudes A, B, G that are next to nothing, of a body between walls.
+
+    At the free edge of a ring classical MPM loses its det F whatever the amplitude.
+    """
+    sizes = [abs(getattr(solution, name)) for name in ("A", "B", "G") if hasattr(solution, name)]
+    held = solution.boundary in ("roller", "fixed")
+    return held and bool(sizes) and max(sizes) <= SMALL * float(solution.upper[0] - solution.lower[0])
 
 
 def same(one: str, other: str) -> bool:

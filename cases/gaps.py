@@ -4,33 +4,36 @@ from dataclasses import InitVar, dataclass, field
 
 import numpy as np
 
-from mms.manufacture import Manufactured
 from solver.layout import Layout
 from solver.state import Floats, Ints
 from solver.step import Model
 
 LOOKS = 16  # in a run
-SAMPLE = 2000  # particles, about
+PATCHES, PATCH = 8, 200  # particles are looked at in so many places, and so many together in each
 
 
 @dataclass
 class Gaps:
-    """How far domains are from tiling the body: rms distance of their corners from where the exact motion takes them.
+    """How far domains are from tiling the body: rms distance of the copies of a corner from their middle.
 
-    In shares of the particle spacing, the largest of all looks. Neighbours share the corners of the layout, so a corner
-    that is not there leaves a gap or overlaps. `most` is None for methods that know points only.
+    Neighbours of the layout share corners; where each has its own, there is a gap or an overlap. In shares of the
+    particle spacing, the largest of all looks. `most` is None for methods that know points only.
     """
 
-    exact: Manufactured
     layout: InitVar[Layout]
     most: float | None = None
-    chosen: Ints = field(init=False)
-    corners: Floats = field(init=False)  # of the chosen particles at reference, (n,4,2)
+    chosen: Ints = field(init=False)  # particles, by their rows in the layout
+    owner: Ints = field(init=False)  # of each corner of theirs, (n*4,): which shared corner it is a copy of
     spacing: float = field(init=False)
 
     def __post_init__(self, layout: Layout) -> None:
-        self.chosen = np.arange(0, len(layout), max(1, len(layout) // SAMPLE))
-        self.corners, self.spacing = layout.corners[self.chosen], float(np.sqrt(layout.V0.mean()))
+        self.chosen, self.spacing = patches(layout.X), float(np.sqrt(layout.V0.mean()))
+        bent = None if layout.bent is None else layout.bent[self.chosen]
+        part = Layout(layout.X[self.chosen], layout.V0[self.chosen], layout.r0[self.chosen], bent)
+        places = part.corners.reshape(-1, 2)
+        quantum = 1e-4 * self.spacing
+        steps = np.rint((places - places.min(axis=0)) / quantum + 0.31).astype(np.int64)  # no corner on a half
+        self.owner = np.unique(steps @ (1 << 32, 1), return_inverse=True)[1].reshape(-1)
 
     def look(self, model: Model) -> None:
         """Measure now."""
@@ -39,6 +42,21 @@ class Gaps:
         rows = row[self.chosen]
         corners = model.basis.corners(p.x[rows], p.F[rows], p.domain[rows])
         if corners is not None:
-            apart = corners - self.exact.x(self.corners.reshape(-1, 2), model.time).reshape(corners.shape)
-            distance = float(np.sqrt(np.mean(np.sum(apart**2, axis=-1)))) / self.spacing
-            self.most = max(self.most or 0.0, distance)
+            self.most = max(self.most or 0.0, self.apart(corners.reshape(-1, 2)) / self.spacing)
+
+    def apart(self, places: Floats) -> float:
+        """rms distance of copies (n,2) from the middle of those of the same corner, over corners with several."""
+        copies = np.bincount(self.owner)
+        middle = np.stack([np.bincount(self.owner, places[:, a]) / copies for a in (0, 1)], axis=-1)
+        several = copies[self.owner] > 1
+        away = (places - middle[self.owner])[several]
+        return float(np.sqrt(np.mean(np.sum(away**2, axis=1)))) if several.any() else 0.0
+
+
+def patches(X: Floats) -> Ints:
+    """Rows of particles in some places, each with its neighbours; all particles where there are few."""
+    if len(X) <= PATCHES * PATCH:
+        return np.arange(len(X))
+    seeds = X[np.linspace(0, len(X) - 1, PATCHES + 2).astype(np.int64)[1:-1]]
+    near = [np.argpartition(((X - seed) ** 2).sum(axis=1), PATCH)[:PATCH] for seed in seeds]
+    return np.unique(np.concatenate(near))

@@ -106,8 +106,9 @@ def _judge(q: Quantity, confidence: float) -> Verdict:
     order, fit, slope, shares = q.expectation.order, q.fit, q.fit.slope, None
     if order is not None and slope:
         shares = contamination(fit.h[fit.judged], fit.error[fit.judged], order, ONE_SIGMA, fit.noise)
-    if order is None and q.ordered and all(q.expectation.lost in level.failed for level in q.ordered):
-        outcome, reason = _non_convergence(q, confidence)
+    if q.expectation.lost and q.ordered and all(q.expectation.lost in level.failed for level in q.ordered):
+        last = f"the last at h={_inverse(q.ordered[-1].h)} with {q.ordered[-1].failed}"
+        outcome, reason = PASS, f"does not converge, as expected: all {len(q.ordered)} runs ended, {last}"
     elif not len(fit.h):
         ends = "; ".join(f"h={_inverse(level.h)}: {level.ended}" for level in q.ordered)
         outcome, reason = Outcome.ERROR, f"no level finished ({ends or 'there is none'})"
@@ -191,20 +192,17 @@ def _magnitude(q: Quantity) -> Finding:
 
 
 def _non_convergence(q: Quantity, confidence: float) -> Finding:
-    """Met if the error grows clearly from its smallest value on, or runs finer than a finished one are lost, or all.
+    """Met if the error grows clearly from its smallest value on, or if runs finer than a finished one lost det F.
 
-    Where a stall is expected, an order that has fallen below it meets it too.
+    Where a stall is expected, an order that has fallen below it meets it, and lost runs do not.
     """
-    e, lost = q.expectation, [level for level in q.ordered if q.expectation.lost in level.failed]
-    if not len(q.fit.h):  # every level was lost
-        last = f"the last at h={_inverse(lost[-1].h)} with {lost[-1].failed}"
-        return PASS, f"does not converge, as expected: all {len(lost)} runs ended, {last}"
+    e, lost = q.expectation, [level for level in q.ordered if "det F" in level.failed]
     h, error, slope, orders = q.fit.h, q.fit.error, q.fit.slope, q.fit.orders
     best, seen = int(np.argmin(error)), []
     finer = [level for level in lost if level.h < h[0]]
     if error[-1] >= GROWTH * error[best] > 0 and np.polyfit(np.log(h[best:]), np.log(error[best:]), 1)[0] < 0:
         seen.append(f"the error grew {_path(q.fit, best)}")
-    if finer:
+    if finer and e.stall is None:
         more = f" and {len(finer) - 1} finer as well" if finer[1:] else ""
         seen.append(f"the run at h={_inverse(finer[0].h)} ended with {finer[0].failed}{more}")
     if e.stall is not None and len(h) >= LEVELS and orders[-1] < e.stall and orders.max() - orders[-1] > DROP:

@@ -50,10 +50,10 @@ class Packing:
                 i, j = np.argwhere(full & (held == fewest))[0]
                 self.fewest, self.cell = fewest, (int(i), int(j))
 
-    def begin(self, model: Model) -> None:
-        """Count at the start. Raises RunFailed with the cell if a full one holds no particle."""
+    def begin(self, model: Model, refuse: bool = True) -> None:
+        """Count at the start. Raises RunFailed with the cell if a full one holds no particle, unless told not to."""
         self.look(model)
-        if self.fewest == 0:
+        if refuse and self.fewest == 0:
             raise RunFailed("no particle in a cell that the body fills", 0, -1, self.cell)
 
     @property

@@ -22,8 +22,8 @@ class Expectation:
     """Registered before the run: the band [order - below, order + above], its source, and the recorded error.
 
     `constant` is the error once recorded at cell size `constant_h`. An order of None expects non-convergence: growth of
-    the error, runs that end with `lost` in their reason, or, if `stall` is given, a local order that falls below it
-    on cells of `stall_h` or finer.
+    the error, or fine runs that lose their det F; if `stall` is given, a local order that falls below it on cells of
+    `stall_h` or finer; if `lost` is given, that every run ends with these words in its reason.
     Raises ValueError if only one of the two is given, if the band has no width, or for a stall beside an order.
     """
 
@@ -35,7 +35,7 @@ class Expectation:
     constant_h: float | None = None
     stall: float | None = None
     stall_h: float | None = None
-    lost: str = "det F"
+    lost: str = ""
 
     def __post_init__(self) -> None:
         if (self.constant is None) != (self.constant_h is None):
@@ -47,8 +47,10 @@ class Expectation:
 
     @property
     def kind(self) -> str:
-        """`order 2`, `diverges` or `stalls`."""
-        return f"order {self.order:g}" if self.order is not None else "diverges" if self.stall is None else "stalls"
+        """`order 2`, `diverges`, `stalls`, or `lost` with the reason."""
+        if self.order is not None:
+            return f"order {self.order:g}"
+        return "stalls" if self.stall is not None else f"lost: {self.lost}" if self.lost else "diverges"
 
 
 @dataclass(frozen=True)

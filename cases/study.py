@@ -25,7 +25,7 @@ def sources_digest() -> str:
         *TOP.glob("solver/**/*.py"),
         *TOP.glob("mms/**/*.py"),
         *TOP.glob("cases/library/*.py"),
-        TOP / "cases/norms.py",
+        *(TOP / f"cases/{name}.py" for name in ("norms", "gaps", "packing", "memory")),
     ]
     return digest(files)
 
@@ -117,7 +117,7 @@ class Result:
     failure: Failure | None = None
     environment: dict[str, str] = field(default_factory=dict)
     crossings: int = 0  # faces of cells that particles passed
-    cpu_s: float = 0.0  # processor time of the steps, all threads
+    cpu_s: float = 0.0  # processor time of the steps, all threads, with body force and norms
     gap: float | None = None  # see cases.gaps.Gaps; None for methods that know points only
     packed: Packed | None = None  # see cases.packing.Packing; None where nobody looked
     audit: tuple[Spot, ...] = ()  # what a study of the solution cannot see, and what it can

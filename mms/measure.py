@@ -137,7 +137,8 @@ def measure(exact: Manufactured, solution: Any, law: Law) -> dict[str, float]:
     if np.isclose(*extent):
         image = sampler(solution.lower + (layout.X - solution.lower)[:, ::-1], times).u[..., ::-1]
         numbers["mirror"] = share(largest(image - s.u), largest(s.u))
-    return {**numbers, **at_the_edge(s, sampler, layout, times, least_stress(law))}
+    free = float(solution.boundary == "free")
+    return {**numbers, **at_the_edge(s, sampler, layout, times, least_stress(law)), "edge_free": free}
 
 
 def least_stress(law: Law) -> float:

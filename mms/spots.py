@@ -194,7 +194,12 @@ def crossing(n: Numbers) -> Spot:
 def walls(n: Numbers) -> Spot:
     """What the boundary does: held, sliding, free or prescribed."""
     moves, through, pulls = (n[f"edge_{what}"] > ROUND for what in ("motion", "normal_motion", "traction"))
-    if not (moves or pulls):
+    if n["edge_free"] and pulls:
+        cannot = (
+            f"The edges are free, and yet the fields have a traction of {percent(n['edge_traction'])} of the largest "
+            "stress there: with this material the problem is not the one that is run, and no study of it converges."
+        )
+    elif not (moves or pulls):
         cannot = "The boundary neither moves nor carries stress: no wall takes part."
     elif not moves:
         cannot = "The boundary does not move: a wall along which particles slide takes no part."
@@ -203,7 +208,7 @@ def walls(n: Numbers) -> Spot:
     else:
         cannot = "The boundary moves as it is prescribed: walls that hold still or let particles slide take no part."
     can = "Particles slide along walls that they press on; walls that hold them and free edges take no part."
-    return spot("walls", not (moves and pulls and not through), cannot, can)
+    return spot("walls", bool(n["edge_free"]) or not (moves and pulls and not through), cannot, can)
 
 
 def load(n: Numbers) -> Spot:

@@ -37,6 +37,7 @@ class Card:
     plain: str
     stall: str
     unseen: str
+    seen: tuple[str, ...]
 
 
 def cards(record: Record) -> list[Card]:
@@ -80,6 +81,7 @@ def _card(record: Record, found: Finding) -> Card:
         plain,
         short(found),
         audited.short(record, d.solution),
+        tuple(spot.sentence for spot in audited.seen(record, d.solution)),
     )
 
 

@@ -32,7 +32,7 @@ def overview(record: Record) -> Table:
         (words.method(m), str(ppc), *(_cell(record, found.get((m, ppc, s))) for s in record.solutions))
         for m, ppc in sorted(keys, key=lambda key: (methods(record).index(key[0]), key[1]))
     )
-    caption = "Order of u between the two finest grids, and error on the finest as a share of the exact rms"
+    caption = "Order of u between the two finest grids that finished, and error there as a share of the exact rms"
     return Table(caption, head, rows, heads=2)
 
 
@@ -50,7 +50,8 @@ def _cell(record: Record, found: Finding | None) -> str:
     result = record.result(finished[-1][0])
     share = finished[-1][1] / result.scale["u"] if result and result.scale.get("u") else float("nan")
     orders = found.verdict.local_orders
-    return f"{words.order(orders[-1]) if orders else words.DASH}, {share:.1e}".replace("e-0", "e-")
+    text = f"{words.order(orders[-1]) if orders else words.DASH}, {share:.1e}".replace("e-0", "e-").replace("e+00", "")
+    return text if not found.levels[-1].ended else f"{text} at {words.cell_size(finished[-1][0].cells)}, then lost"
 
 
 def _series(record: Record, found: Finding) -> Series:

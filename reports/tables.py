@@ -50,7 +50,7 @@ def verdicts(record: Record) -> Rows:
     rows = []
     for found in record.findings:
         d, v, e = found.declared, found.verdict, found.declared.expectation
-        expected = None if e is None else "diverges" if e.order is None else e.order
+        expected = None if e is None else e.kind if e.order is None else e.order
         low, high = v.interval or (None, None)
         rows.append(
             dict(zip(KEY, key(d), strict=True))

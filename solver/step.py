@@ -135,4 +135,4 @@ def refuse_outside(model: Model, blocks: Ints) -> None:
             arrays = (p.x[i], p.F[i].ravel(), p.domain[i])
             box = (0.0, g.nx - 1.0, 0.0, g.ny - 1.0)
             if not model.basis.fill(*arrays, *g.origin, 1.0 / g.dx, g.nx, g.ny, *box, table, node):
-                fail(model, i, model.basis.limit)
+                fail(model, i, model.basis.refusal(p.F[i], p.domain[i], g.dx))

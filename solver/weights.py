@@ -39,7 +39,6 @@ class Basis:
     order: ClassVar[float]  # expected order of the displacement; source in the docstring
     fill: ClassVar[Callable[..., bool]]  # a kernel of signature FILL
     width: ClassVar[int] = 0  # W
-    limit: ClassVar[str] = "the particle is outside the grid"  # what it means when the fill refuses the whole grid
 
     @staticmethod
     def domain(layout: Layout, place: Place) -> Floats:
@@ -55,6 +54,11 @@ class Basis:
     def corners(x: Floats, F: Floats, domain: Floats) -> Floats | None:
         """Corners (P,4,2) of particles with these arrays, in the order of solver.layout.SIDES; None for points."""
         return None
+
+    @staticmethod
+    def refusal(F: Floats, domain: Floats, dx: float) -> str:
+        """Why the fill refuses a particle on the whole grid; F (2,2) and domain (W,) are its own."""
+        return "the particle is outside the grid"
 
     @staticmethod
     def convect(particles: Particles, grid: Grid, dt: float) -> None:

@@ -16,7 +16,7 @@ from mms.manufacture import Manufactured, manufacture
 from mms.measure import boundary
 from mms.spots import RULES, SEEN_BY
 from solver.layout import annulus, rectangle
-from solver.plugins import available, create
+from solver.plugins import MATERIALS, SOLUTIONS, available, create
 from solver.state import Floats
 from verify.main import main
 
@@ -176,6 +176,18 @@ def test_claims_hold_against_planted_defects(name: str, text: str) -> None:
     )
     assert (ratio > 1.2) == (key not in case(text).blind), ratio
     assert ratio > 1.2 or abs(ratio - 1) < 0.05
+
+
+def test_free_edges_with_a_traction_are_told() -> None:
+    """The ring is free of traction for nu = 0 alone."""
+    own, other = (
+        audit(manufacture(ring, law, law.rho0), ring, law)
+        for ring in (create(SOLUTIONS, "expanding_ring"),)
+        for law in (create(MATERIALS, ring.material), create(MATERIALS, "neo_hookean"))
+    )
+    said = [next(spot.sentence for spot in a.spots if spot.key == "walls") for a in (own, other)]
+    assert "no study of it converges" not in said[0]
+    assert "no study of it converges" in said[1]
 
 
 def test_boundary_of_a_rectangle() -> None:

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from cases.expectations import JUDGED_PPC, REGISTERED, STALL, expected, registry
+from cases.expectations import JUDGED_PPC, REGISTERED, STALL, expected, later_with_9, registered, registry
 from cases.methods_study import LEVELS, QUICK, Comparison, build_methods, everything
 from cases.mms_study import Sweep, build, canonical
 from cases.study import QUANTITIES
@@ -29,6 +29,9 @@ def test_everything_shipped_is_registered_with_its_source(method: str, solution:
     for quantity in QUANTITIES:
         for ppc in JUDGED_PPC:
             found = of(method, solution, quantity, ppc)
+            if ppc == 9 and later_with_9(method, solution, registered(solution, method, quantity)):
+                assert found is None
+                continue
             assert found is not None, f"register what {method} does on {solution}: cases/expectations.py"
             assert found.source
 
@@ -52,7 +55,8 @@ def test_kinds() -> None:
     assert of("cpdi", "axis_aligned").kind == "order 2"
     assert of("cpdi", "axis_aligned").constant == 1.127e-5
     assert (of("gimp", "bar").kind, of("gimp", "bar").stall) == ("stalls", STALL)
-    assert of("cpgimp", "generalised_vortex").lost == "no width"
+    assert of("cpgimp", "generalised_vortex").lost == "wider than two cells"
+    assert of("mpm", "expanding_ring").kind == "lost: det F"
     assert of("cpdi", "clamped_shear", "F").order == pytest.approx(1.65)
 
 
@@ -65,6 +69,10 @@ def test_where_nothing_is_expected() -> None:
     assert of("cpdi", "axis_aligned:phase=0.5").constant is None
     assert of("cpdi", "expanding_ring", material=LAW) is None
     assert of("cpdi", "axis_aligned", material="linear_elastic") is None
+    assert of("mpm", "swirl:A=1e-6") is None  # B is not small
+    assert of("mpm", "swirl:A=1e-6,B=1e-6").order == 2
+    assert of("mpm", "expanding_ring:A=1e-6") is None  # at a free edge no amplitude is small
+    assert of("bspline3", "bar", ppc=9) is None
 
 
 def test_an_own_solution_has_the_order_of_its_file(tmp_path: Path) -> None:

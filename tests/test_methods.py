@@ -46,7 +46,7 @@ def test_the_vortex_tells_rotation(tmp_path: Path) -> None:
     assert code == 3  # one grid decides nothing
     runs = {r["method"]: r for r in json.loads(text)["runs"]}
     assert {m for m, r in runs.items() if r["status"] == "finished"} == {"gimp", "cpdi", "cpdi2"}
-    assert "no width" in runs["cpgimp"]["reason"]
+    assert "wider than two cells" in runs["cpgimp"]["reason"]
     assert "det F" in runs["mpm"]["reason"]
     gaps = {m: runs[m]["gap"] for m in ("gimp", "cpdi", "cpdi2")}
     assert gaps["gimp"] > 2 * gaps["cpdi"] > 2 * gaps["cpdi2"] * 0.9

@@ -380,18 +380,21 @@ def test_nothing_finished_is_an_error(expectation: Expectation) -> None:
     assert judge([], expectation, floor=0.0, dt_halved=None).outcome is ERROR
 
 
+GIMP_4 = (5.109e-3, 1.881e-3, 8.807e-4, 5.360e-4)  # measured: 1.44 1.09 0.72
+STALLS = Expectation(None, stall=1.5, source="measured")
+
+
 def test_all_runs_lost_is_non_convergence() -> None:
     """By the registered reason alone, and every one of them."""
-    got = verdict([], DIVERGES, [DET] * 4)
+    lost = Expectation(None, lost="det F", source="measured")
+    got = verdict([], lost, [DET] * 4)
     assert (got.outcome, "all 4 runs ended" in got.reason) == (PASS, True)
-    assert verdict([], DIVERGES, [DET] * 3 + ["out of memory"]).outcome is ERROR
+    assert verdict([], lost, [DET] * 3 + ["out of memory"]).outcome is ERROR
+    assert verdict([], DIVERGES, [DET] * 4).outcome is ERROR  # growth was registered, and none was seen
+    assert verdict([], STALLS, [DET] * 4).outcome is ERROR
     narrow = Expectation(None, lost="no width")
     assert verdict([], narrow, [DET] * 4).outcome is ERROR
     assert verdict([], narrow, ["a domain of no width"] * 4).outcome is PASS
-
-
-GIMP_4 = (5.109e-3, 1.881e-3, 8.807e-4, 5.360e-4)  # measured: 1.44 1.09 0.72
-STALLS = Expectation(None, stall=1.5, source="measured")
 
 
 def test_a_stall_is_recognised() -> None:
@@ -402,6 +405,7 @@ def test_a_stall_is_recognised() -> None:
     assert verdict(GIMP_4, DIVERGES).outcome is not PASS  # a stall is no divergence
     assert verdict(GIMP_4, SECOND).outcome is not PASS
     assert verdict(GIMP_4[:3], STALLS).outcome is INCONCLUSIVE  # too few to say so
+    assert verdict(CPDI_4[:4], STALLS, [DET]).outcome is not PASS  # order 2 and a lost run are no stall
 
 
 @pytest.mark.parametrize("scatter", [0.0, 0.03])

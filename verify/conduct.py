@@ -27,6 +27,7 @@ class Settings:
     threads: int = 1
     json_output: bool = False
     junit: Path | None = None
+    compare: bool = False  # one table of methods and solutions in place of every error
 
 
 @contextmanager
@@ -50,7 +51,6 @@ def conduct(study: Study, settings: Settings) -> int:
     with usage():
         from cases.store import Store
         from cases.verdicts import exit_code
-        from reports.cost import compares
         from reports.render import render
         from reports.stored import Record
         from verify.document import document
@@ -72,7 +72,7 @@ def conduct(study: Study, settings: Settings) -> int:
         with printing():
             if settings.json_output:
                 typer.echo(document(study, found, results, page))
-            elif compares(record):
+            elif settings.compare:
                 show_overview(record, page)
             else:
                 show(study, found, page)

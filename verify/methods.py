@@ -42,4 +42,4 @@ def methods(
         study = build_methods(comparison, "verify " + shlex.join(repeatable(sys.argv[1:])), name)
         if jobs is not None and jobs < 1:
             raise ValueError("--jobs takes whole numbers from 1 on")
-    return conduct(study, Settings(out or Path("results") / study.name, jobs, 1, json_output, junit))
+    return conduct(study, Settings(out or Path("results") / study.name, jobs, 1, json_output, junit, compare=True))

@@ -21,10 +21,12 @@ from mms.layouts import LAYOUTS
 from mms.manufacture import Manufactured, manufacture
 from mms.spots import Spot
 from solver.boundary import box, moving
-from solver.layout import CENTRED, parallelograms
+from solver.layout import CENTRED, Layout, parallelograms
 from solver.plugins import MATERIALS, METHODS, SOLUTIONS, TRANSFERS, create, load
 from solver.state import Floats, Grid, Particles
 from solver.step import Model, RunFailed, Scheme, advance, check_time_step
+
+COUNTED = 40_000  # particles: the outline of a uniform layout with more takes as long as the run's first steps
 
 
 @dataclass
@@ -34,7 +36,7 @@ class Comparison:
     exact: Manufactured
     norms: Norms
     gaps: Gaps
-    packing: Packing
+    packing: Packing | None
     shares: Floats
     behind: float  # how far v is behind x in time
 
@@ -66,7 +68,7 @@ def setup(run: Run) -> tuple[Model, Comparison, int]:
     behind = 0.5 * dt if run.staggered else 0.0
 
     exact, basis = manufactured(run.solution, run.material), load(METHODS, run.method)()
-    layout = create(LAYOUTS, run.layout)(solution, exact, dx, run.ppc, CENTRED if free else run.offset)
+    layout = laid_out(run, solution, exact)
     particles, X = basis.populate(layout, material.rho0, lambda places: exact.x(places, 0.0)), layout.X
     particles.x, particles.v = exact.x(X, 0.0), exact.v(X, -behind)
     particles.F, particles.sigma = exact.F(X, 0.0), exact.sigma(X, 0.0)
@@ -76,8 +78,16 @@ def setup(run: Run) -> tuple[Model, Comparison, int]:
     walls = moving(grid, solution.walls) if solution.boundary == "moving" else box(grid, solution.boundary)
     model = Model(grid, particles, basis, material, walls, dt, scheme)
     transfer.start(model, lambda X: velocity_gradient(exact, X, -behind, 1e-3 * dt))
-    norms, gaps = Norms(len(particles), float(particles.V0.mean())), Gaps(exact, layout)
-    return model, Comparison(exact, norms, gaps, Packing(exact, layout, dx), new_shares(particles), behind), steps
+    packing = Packing(exact, layout, dx) if run.layout != "uniform" or len(layout) <= COUNTED else None
+    norms, gaps = Norms(len(particles), float(particles.V0.mean())), Gaps(layout)
+    return model, Comparison(exact, norms, gaps, packing, new_shares(particles), behind), steps
+
+
+def laid_out(run: Run, solution: Any, exact: Manufactured) -> Layout:
+    """Where the particles of the run lie; of a free body the offset moves the grid instead."""
+    offset = CENTRED if solution.boundary == "free" else run.offset
+    layout: Layout = create(LAYOUTS, run.layout)(solution, exact, width(solution) / run.cells, run.ppc, offset)
+    return layout
 
 
 def velocity_gradient(exact: Manufactured, X: Floats, t: float, short: float) -> Floats:
@@ -114,12 +124,14 @@ def execute(run: Run, tick: Callable[[float], None] = lambda share: None) -> tup
     try:
         if not run.force:
             check_time_step(model)
-        comparison.packing.begin(model)
+        if comparison.packing:
+            comparison.packing.begin(model, refuse=run.layout != "uniform")
         for step in range(steps):
             advance(model, comparison)
             if step % often == 0:
                 comparison.gaps.look(model)
-                comparison.packing.look(model)
+                if comparison.packing:
+                    comparison.packing.look(model)
             tick((step + 1) / steps)
         comparison(model.particles, model.time)
     except RunFailed as reason:
@@ -141,7 +153,7 @@ def execute(run: Run, tick: Callable[[float], None] = lambda share: None) -> tup
         cpu_s=cpu,
         crossings=model.crossings,
         gap=comparison.gaps.most,
-        packed=comparison.packing.packed,
+        packed=comparison.packing.packed if comparison.packing else None,
         audit=audited(run.solution, run.material),
         peak_memory_mb=peak_memory(),
         scale=scale,
@@ -183,7 +195,7 @@ def snapshot(run: Run, model: Model, comparison: Comparison) -> Arrays:
     arrays = {name: model.particles.in_initial_order(name) for name in ("X", "x", "F", "domain")}
     corners = model.basis.corners(arrays["x"], arrays["F"], arrays.pop("domain"))
     if corners is None:
-        r0 = comparison.packing.layout.r0
+        r0 = laid_out(run, create(SOLUTIONS, run.solution), comparison.exact).r0
         corners = parallelograms(arrays["x"], np.einsum("pab,psb->psa", arrays["F"], r0))
     error = arrays["x"] - comparison.exact.x(arrays["X"], model.time)
     arrays |= {"corners": corners, "error_u": np.hypot(*error.T)}

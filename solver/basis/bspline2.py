@@ -14,7 +14,7 @@ import numpy as np
 
 from solver._jit import kernel
 from solver.basis._splines import beyond
-from solver.state import PAD
+from solver.state import PAD, Floats
 from solver.tensor import three
 from solver.weights import FILL, Basis, outside
 
@@ -65,4 +65,8 @@ class Bspline2(Basis):
     support: ClassVar[int] = 9
     order: ClassVar[float] = 2.0
     fill = staticmethod(fill)
-    limit: ClassVar[str] = "the particle is outside the grid, half a cell or more behind a wall"
+
+    @staticmethod
+    def refusal(F: Floats, domain: Floats, dx: float) -> str:
+        """A wall."""
+        return "the particle is outside the grid, half a cell or more behind a wall"

@@ -54,7 +54,6 @@ class Cpdi(Basis):
     order: ClassVar[float] = 2.0
     fill = staticmethod(fill)
     width: ClassVar[int] = 4
-    limit: ClassVar[str] = "a corner of the particle's domain is outside the grid"
 
     @staticmethod
     def domain(layout: Layout, place: Place) -> Floats:
@@ -66,3 +65,8 @@ class Cpdi(Basis):
         """x - r1 - r2 and so on, r = F r0."""
         r0 = domain.reshape(-1, 2, 2)
         return parallelograms(x, np.einsum("pab,psb->psa", F, r0))
+
+    @staticmethod
+    def refusal(F: Floats, domain: Floats, dx: float) -> str:
+        """A corner."""
+        return "a corner of the particle's domain is outside the grid"

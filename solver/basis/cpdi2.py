@@ -83,7 +83,6 @@ class Cpdi2(Basis):
     order: ClassVar[float] = 2.0
     fill = staticmethod(fill)
     width: ClassVar[int] = 8
-    limit: ClassVar[str] = "a corner of the particle's domain is outside the grid, or the domain is turned inside out"
 
     @staticmethod
     def domain(layout: Layout, place: Place) -> Floats:
@@ -99,3 +98,11 @@ class Cpdi2(Basis):
     def convect(particles: Particles, grid: Grid, dt: float) -> None:
         """Corners are material points: they go with the velocity of the grid."""
         move_all(particles.domain.ravel(), grid.origin, 1.0 / grid.dx, grid.ny, grid.motion, dt)
+
+    @staticmethod
+    def refusal(F: Floats, domain: Floats, dx: float) -> str:
+        """Inside out, or a corner."""
+        one, two = domain[4:6] - domain[0:2], domain[6:8] - domain[2:4]
+        if not one[0] * two[1] - one[1] * two[0] > 0:
+            return "the particle's domain is turned inside out"
+        return "a corner of the particle's domain is outside the grid"

@@ -1,8 +1,8 @@
 """cpGIMP: GIMP on rectangles that stretch with the diagonal of F, l = |F_xx| l0_x along x and |F_yy| l0_y along y.
 
-Contiguous particles where the body is stretched along the axes; shear and rotation are not followed, and at a quarter
-turn F_xx and F_yy vanish, and with them the domain. Source: Bardenhagen & Kober 2004; Wallstedt & Guilkey 2008.
-Half lengths of up to one cell.
+Contiguous particles where the body is stretched along the axes; shear and rotation are not followed: a body that turns
+and is stretched gets domains much too wide or, where F_xx or F_yy vanishes, none. Half lengths of up to one cell.
+Source: Bardenhagen & Kober 2004; Wallstedt & Guilkey 2008.
 """
 
 from typing import ClassVar
@@ -65,9 +65,6 @@ class Cpgimp(Basis):
     order: ClassVar[float] = 2.0
     fill = staticmethod(fill)
     width: ClassVar[int] = 2
-    limit: ClassVar[str] = (
-        "a neighbour is outside the grid, or the particle's domain is wider than two cells or of no width"
-    )
 
     @staticmethod
     def domain(layout: Layout, place: Place) -> Floats:
@@ -79,3 +76,11 @@ class Cpgimp(Basis):
         """Of rectangles along the axes."""
         half = np.abs(np.diagonal(F, axis1=1, axis2=2)) * domain
         return parallelograms(x, half[:, :, None] * np.eye(2))
+
+    @staticmethod
+    def refusal(F: Floats, domain: Floats, dx: float) -> str:
+        """Too wide for sixteen neighbours, without width, or at the edge."""
+        half = np.abs(np.diagonal(F)) * domain
+        if half.max() > dx:
+            return "the particle's domain is wider than two cells"
+        return "a neighbour is outside the grid" if half.min() > 0 else "the particle's domain has no width"

@@ -71,7 +71,6 @@ class Gimp(Basis):
     order: ClassVar[float] = 2.0
     fill = staticmethod(fill)
     width: ClassVar[int] = 2
-    limit: ClassVar[str] = "a neighbour is outside the grid, or the particle's domain is wider than a cell"
 
     @staticmethod
     def domain(layout: Layout, place: Place) -> Floats:
@@ -83,3 +82,10 @@ class Gimp(Basis):
         """Of rectangles along the axes."""
         half = domain
         return parallelograms(x, half[:, :, None] * np.eye(2))
+
+    @staticmethod
+    def refusal(F: Floats, domain: Floats, dx: float) -> str:
+        """Too wide for nine neighbours, or at the edge."""
+        if not domain.max() < LARGEST * dx:
+            return "the particle's domain is wider than a cell"
+        return "a neighbour is outside the grid"

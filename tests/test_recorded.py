@@ -1,0 +1,46 @@
+"""Recorded errors, small amplitudes and the separation by rotation, run anew."""
+
+import pytest
+
+from cases.expectations import RECORDED
+from cases.library.mms import execute
+from cases.methods_study import Comparison, build_methods
+from cases.mms_study import canonical
+from cases.runner import InProcess, run_study
+from cases.store import Store
+from cases.study import Result, Run
+from cases.verdicts import findings
+from solver.plugins import MATERIALS, METHODS, SOLUTIONS, available, create
+
+pytestmark = pytest.mark.slow
+
+
+def one(method: str, solution: str, cells: int, ppc: int = 4) -> Result:
+    """A run as studies do it."""
+    material = canonical(MATERIALS, create(SOLUTIONS, solution).material)
+    return execute(Run(method, solution, material, cells, ppc, 0.4))[0]
+
+
+@pytest.mark.parametrize("key", [key for key, (h, _) in RECORDED.items() if h == 1 / 64])
+def test_recorded_errors(key: tuple[str, str, int]) -> None:
+    method, solution, ppc = key
+    assert one(method, solution, 64, ppc).errors["u"]["rms"] == pytest.approx(RECORDED[key][1], rel=0.02)
+
+
+@pytest.mark.parametrize("solution", ["axis_aligned:A=1e-6", "clamped_shear:G=1e-6"])
+def test_all_methods_are_of_second_order_while_nothing_crosses(solution: str, tmp_path) -> None:
+    study = build_methods(Comparison(tuple(available(METHODS)), {solution: (16, 24, 32, 48, 64)}), "verify", "small")
+    store = Store(tmp_path)
+    store.create(study)
+    results = run_study(study, store, InProcess(), 1)
+    found = {f.declared.method: str(f.verdict.outcome) for f in findings(study, results) if f.declared.judged}
+    assert found == dict.fromkeys(available(METHODS), "PASS")
+    assert all(result.crossings == 0 for result in results.values())
+
+
+def test_the_vortex_separates_cpdi_from_gimp() -> None:
+    """On coarse grids their errors are alike; from 96 cells on GIMP stalls and CPDI goes on."""
+    errors = {(m, n): one(m, "generalised_vortex", n).errors["u"]["rms"] for m in ("gimp", "cpdi") for n in (96, 128)}
+    assert errors["gimp", 96] > errors["gimp", 128] * 0.7  # hardly falls, if at all
+    assert errors["cpdi", 96] / errors["cpdi", 128] == pytest.approx((128 / 96) ** 2, rel=0.1)
+    assert errors["gimp", 128] > 2 * errors["cpdi", 128]
