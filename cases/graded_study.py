@@ -12,7 +12,7 @@ from math import exp, log
 
 from cases.mms_study import Sweep, build, canonical
 from cases.study import Declared, Result, Run, Study
-from mms.layouts import LAYOUTS
+from solver.plugins import LAYOUTS
 
 Results = Mapping[str, Result]
 Point = tuple[float, float]  # cost, error
@@ -58,11 +58,6 @@ def build_graded(plan: Plan, command: str, name: str) -> Study:
 def kind(run: Run) -> str:
     """uniform, graded or thinned."""
     return run.layout.partition(":")[0]
-
-
-def updates(result: Result) -> float:
-    """Particle updates: particles times steps."""
-    return float(result.particles * result.steps)
 
 
 @dataclass(frozen=True)
@@ -114,7 +109,7 @@ def saving(result: Result, runs: Sequence[Run], results: Results, quantity: str)
         result.particles / twin[0].particles if twin else None,
         error / twin[1] if twin and twin[1] > 0 else None,
         factor(error, result.particles, [(float(r.particles), e) for r, e in here]),
-        None if cheapest is None else cheapest / updates(result),
+        None if cheapest is None else cheapest / result.updates,
     )
 
 
@@ -127,7 +122,7 @@ def uniform(run: Run, runs: Sequence[Run], results: Results, quantity: str) -> l
 
 def least_updates(error: float, every: Sequence[tuple[Result, float]]) -> float | None:
     """Least particle updates at which a refinement with some uniform count passes the error."""
-    lines = [[(updates(r), e) for r, e in every if r.run.ppc == ppc] for ppc in {r.run.ppc for r, _ in every}]
+    lines = [[(r.updates, e) for r, e in every if r.run.ppc == ppc] for ppc in {r.run.ppc for r, _ in every}]
     return min((cost for line in lines if (cost := cost_of(error, line)) is not None), default=None)
 
 

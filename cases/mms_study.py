@@ -11,10 +11,20 @@ from typing import Any
 
 from cases.expectations import JUDGED, expected
 from cases.study import NORMS, QUANTITIES, Declared, Run, Study
-from mms.layouts import LAYOUTS
 from solver.layout import CENTRED, Offset
 from solver.orders import check_stress
-from solver.plugins import MATERIALS, METHODS, SOLUTIONS, TRANSFERS, absolute, available, create, is_file, split
+from solver.plugins import (
+    LAYOUTS,
+    MATERIALS,
+    METHODS,
+    SOLUTIONS,
+    TRANSFERS,
+    absolute,
+    available,
+    create,
+    is_file,
+    split,
+)
 
 MOST = 64  # replicates
 

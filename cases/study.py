@@ -37,7 +37,7 @@ class Run:
     `solution`, `material` and `transfer` are specifications: a name, or a name with parameters
     (`axis_aligned:A=0.01,phase=0.5`); `stress` is a word of solver/orders.py.
     `courant` is C dt / dx, with C the reference speed of the solution. `offset` shifts the particles in their cells, by
-    shares of their spacing; `layout` says how they are spread.
+    shares of their spacing, or, of a body without walls, the grid by shares of a cell; `layout` is how they are spread.
     """
 
     method: str
@@ -128,6 +128,11 @@ class Result:
         values = [self.errors.get(q, {}).get(n, inf) for q in QUANTITIES for n in NORMS]
         if self.status == "finished" and not all(0 <= value < inf for value in values):
             raise ValueError("a finished run has every error of every quantity, finite and not negative")
+
+    @property
+    def updates(self) -> int:
+        """Particle updates: particles times steps."""
+        return self.particles * self.steps
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,6 @@ from typing import Any
 
 from cases.series import Series
 from reports.figures.convergence import methods
-from reports.figures.cost import updates
 from reports.stored import Record
 
 MANY = 4  # methods, from which on a study is a comparison
@@ -27,8 +26,8 @@ def costs(record: Record) -> list[dict[str, Any]]:
             last = results[-1]
             rows.append(
                 {"method": s.first.method, "solution": s.first.solution, "ppc": s.first.ppc, "cells": last.run.cells}
-                | {"relative_error": last.errors["u"]["rms"] / last.scale["u"], "updates": updates(last)}
-                | {"cpu_s": last.cpu_s, "ns_per_update": 1e9 * last.cpu_s / max(1.0, updates(last))}
+                | {"relative_error": last.errors["u"]["rms"] / last.scale["u"], "updates": last.updates}
+                | {"cpu_s": last.cpu_s, "ns_per_update": 1e9 * last.cpu_s / max(1, last.updates)}
                 | {f"{kind}_at_{TARGET:g}": _at_target(record, s, kind) for kind in ("updates", "cpu_s")}
             )
     return rows
@@ -40,7 +39,7 @@ def _at_target(record: Record, series: Series, kind: str) -> float | None:
     for run, error in record.errors(series, "u", "rms"):
         result = record.result(run)
         if result and result.scale.get("u"):
-            points.append((updates(result) if kind == "updates" else result.cpu_s, error / result.scale["u"]))
+            points.append((result.updates if kind == "updates" else result.cpu_s, error / result.scale["u"]))
     for (c0, e0), (c1, e1) in pairwise(points):
         if e1 <= TARGET < e0 and c0 > 0:
             return exp(log(c0) + (log(c1) - log(c0)) * (log(e0) - log(TARGET)) / (log(e0) - log(e1)))

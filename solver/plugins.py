@@ -15,8 +15,16 @@ from typing import Any
 from solver.sources import TOP
 
 METHODS, MATERIALS, SOLUTIONS, CASES = "solver.basis", "solver.material", "mms.solutions", "cases.library"
+LAYOUTS = "mms.layouts"
 TRANSFERS = "solver.transfers"
-KINDS = {METHODS: "method", MATERIALS: "material", SOLUTIONS: "solution", CASES: "case", TRANSFERS: "transfer"}
+KINDS = {
+    METHODS: "method",
+    MATERIALS: "material",
+    SOLUTIONS: "solution",
+    CASES: "case",
+    TRANSFERS: "transfer",
+    LAYOUTS: "layout",
+}
 
 
 def available(package: str) -> list[str]:

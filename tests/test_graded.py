@@ -13,10 +13,9 @@ from cases.mms_study import Sweep, build
 from cases.packing import counts, full_cells, outline
 from cases.study import NORMS, QUANTITIES, Failure, Result, Run
 from mms.grading import Grading, equidistributed, expected_strain
-from mms.layouts import LAYOUTS
 from mms.manufacture import Manufactured
 from solver.layout import CENTRED, Layout, annulus, graded, rectangle
-from solver.plugins import SOLUTIONS, available, create
+from solver.plugins import LAYOUTS, SOLUTIONS, available, create
 from solver.state import Floats, Grid
 
 CENTRE, CORNER = (15, 15), (0, 0)

@@ -4,14 +4,14 @@ import ast
 
 import typer
 
-from solver.plugins import CASES, KINDS, MATERIALS, METHODS, SOLUTIONS, TRANSFERS, available, folder
+from solver.plugins import CASES, KINDS, LAYOUTS, MATERIALS, METHODS, SOLUTIONS, TRANSFERS, available, folder
 from verify.output import printing
 
 
 def list_plugins() -> None:
-    """List cases, methods, solutions and materials with a line about each."""
+    """List cases, methods, transfers, layouts, solutions and materials with a line about each."""
     with printing():
-        for package in (CASES, METHODS, TRANSFERS, SOLUTIONS, MATERIALS):
+        for package in (CASES, METHODS, TRANSFERS, LAYOUTS, SOLUTIONS, MATERIALS):
             typer.echo(f"{KINDS[package]}s")
             for name in available(package):
                 typer.echo(f"  {name:20}{summary(package, name)}")

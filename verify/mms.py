@@ -8,9 +8,8 @@ from typing import Annotated, get_args
 
 import typer
 
-from mms.layouts import LAYOUTS
 from solver.orders import Stress
-from solver.plugins import MATERIALS, METHODS, SOLUTIONS, TRANSFERS
+from solver.plugins import LAYOUTS, MATERIALS, METHODS, SOLUTIONS, TRANSFERS
 from verify.choices import choices, completion, integers
 
 USUAL = {"cells": "8,16,32,64,128", "ppc": "1,4,9"}

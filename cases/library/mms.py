@@ -17,12 +17,11 @@ from cases.packing import Packing
 from cases.store import Arrays
 from cases.study import QUANTITIES, Failure, Result, Run
 from mms.audit import audit
-from mms.layouts import LAYOUTS
 from mms.manufacture import Manufactured, manufacture
 from mms.spots import Spot
 from solver.boundary import box, moving
 from solver.layout import CENTRED, Layout, parallelograms
-from solver.plugins import MATERIALS, METHODS, SOLUTIONS, TRANSFERS, create, load
+from solver.plugins import LAYOUTS, MATERIALS, METHODS, SOLUTIONS, TRANSFERS, create, load
 from solver.state import Floats, Grid, Particles
 from solver.step import Model, RunFailed, Scheme, advance, check_time_step
 

@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from cases.study import Result, Run
+from cases.study import Run
 from reports import style, words
 from reports.stored import Record
 
@@ -36,11 +36,6 @@ class Row:
 
     title: str
     lines: Sequence[Line]
-
-
-def updates(result: Result) -> float:
-    """Particles times steps."""
-    return float(result.particles * result.steps)
 
 
 def cost_figure(record: Record, rows: Sequence[Row], quantity: str = "u", norm: str = "rms") -> Figure:
@@ -70,7 +65,7 @@ def _draw(left: Axes, right: Axes, record: Record, line: Line, quantity: str, no
     for run in line.runs:
         result, error = record.result(run), record.error(run, quantity, norm)
         if result and error and result.scale.get(quantity):
-            points.append((updates(result), result.cpu_s, error / result.scale[quantity]))
+            points.append((result.updates, result.cpu_s, error / result.scale[quantity]))
     points.sort()
     for panel, cost in ((left, 0), (right, 1)):
         if paid := [p for p in points if p[cost] > 0]:
