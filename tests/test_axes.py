@@ -308,6 +308,7 @@ def test_errors_of_the_page_are_those_that_are_judged(tmp_path: Path) -> None:
     assert "of the geometric mean over 4 runs" in page
 
 
+@pytest.mark.slow
 def test_seven_methods_stay_readable(tmp_path: Path) -> None:
     """Tables of many rows are folded, and every method has a look of its own."""
     names = ("mpm", "gimp", "cpgimp", "cpdi", "cpdi2", "bspline2", "bspline3")

@@ -38,6 +38,7 @@ def test_all_methods_on_the_bar(tmp_path: Path) -> None:
     assert {v["verdict"] for v in json.loads(text)["verdicts"]} == {"PASS"}
 
 
+@pytest.mark.slow
 def test_the_vortex_tells_rotation(tmp_path: Path) -> None:
     """On one grid: CPDI and CPDI2 go on, domains that do not turn cannot, and classical MPM loses its det F."""
     methods = [part for name in ("mpm", "cpgimp", "gimp", "cpdi", "cpdi2") for part in ("--method", name)]

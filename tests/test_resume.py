@@ -101,6 +101,7 @@ def gone_within(pids: set[int], seconds: float) -> None:
         time.sleep(0.02)
 
 
+@pytest.mark.slow
 def test_killed_three_times(tmp_path: Path) -> None:
     """While it starts, right after a Result, and in the middle of a run."""
     sweep = Sweep(tmp_path, "4")
