@@ -25,6 +25,7 @@ from solver.plugins import LAYOUTS, MATERIALS, METHODS, SOLUTIONS, TRANSFERS, cr
 from solver.state import Floats, Grid, Particles
 from solver.step import Model, RunFailed, Scheme, advance, check_time_step
 
+PIECE = 4096  # particles
 COUNTED = 40_000  # particles: the outline of a uniform layout with more takes as long as the run's first steps
 
 
@@ -190,15 +191,24 @@ def round_off(scale: dict[str, float], model: Model) -> dict[str, float]:
 
 
 def snapshot(run: Run, model: Model, comparison: Comparison) -> Arrays:
-    """The particles at the last step in the initial order, float32, for figures; points are drawn as if with CPDI."""
-    arrays = {name: model.particles.in_initial_order(name) for name in ("X", "x", "F", "domain")}
-    corners = model.basis.corners(arrays["x"], arrays["F"], arrays.pop("domain"))
-    if corners is None:
-        r0 = laid_out(run, create(SOLUTIONS, run.solution), comparison.exact).r0
-        corners = parallelograms(arrays["x"], np.einsum("pab,psb->psa", arrays["F"], r0))
-    error = arrays["x"] - comparison.exact.x(arrays["X"], model.time)
-    arrays |= {"corners": corners, "error_u": np.hypot(*error.T)}
-    return {name: a.astype(np.float32) for name, a in arrays.items()}
+    """The particles at the last step in the initial order, float32, for figures; points are drawn as if with CPDI.
+
+    Piece by piece: in double precision and at once, it would be the peak of the run's memory.
+    """
+    p, count = model.particles, len(model.particles)
+    shapes: dict[str, tuple[int, ...]] = {"X": (2,), "x": (2,), "F": (2, 2), "corners": (4, 2), "error_u": ()}
+    arrays = {name: np.empty((count, *shape), np.float32) for name, shape in shapes.items()}
+    known = model.basis.corners(p.x[:1], p.F[:1], p.domain[:1]) is not None
+    r0 = None if known else laid_out(run, create(SOLUTIONS, run.solution), comparison.exact).r0
+    for rows in (slice(lo, lo + PIECE) for lo in range(0, count, PIECE)):
+        X, x, F, place = p.X[rows], p.x[rows], p.F[rows], p.id[rows]
+        corners = model.basis.corners(x, F, p.domain[rows])
+        if corners is None and r0 is not None:
+            corners = parallelograms(x, np.einsum("pab,psb->psa", F, r0[place]))
+        error = np.hypot(*(x - comparison.exact.x(X, model.time)).T)
+        for name, values in {"X": X, "x": x, "F": F, "corners": corners, "error_u": error}.items():
+            arrays[name][place] = values
+    return arrays
 
 
 def parameters(kind: str, specification: str) -> dict[str, float]:

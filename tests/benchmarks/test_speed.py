@@ -122,11 +122,13 @@ def test_cost_of_comparison(benchmark, method: str) -> None:
 def test_memory(benchmark) -> None:
     """Bytes a particle beyond 300 MB, from the peak of a process of its own with 1.3 million particles."""
     code = (
-        "from cases.library.mms import setup, peak_memory, snapshot\n"
+        "from cases.library.mms import setup, snapshot\n"
+        "from cases.memory import peak_memory\n"
         "from cases.study import Run\nfrom solver.step import advance\n"
-        "model, comparison, _ = setup(Run('cpdi', 'axis_aligned', 'neo_hookean', 380, 9, 0.4))\n"
+        "run = Run('cpdi', 'axis_aligned', 'neo_hookean', 380, 9, 0.4)\n"
+        "model, comparison, _ = setup(run)\n"
         "for _ in range(3): advance(model, comparison)\n"
-        "kept = snapshot(model, comparison)\n"
+        "kept = snapshot(run, model, comparison)\n"
         "print((peak_memory() - 300) * 2**20 / len(model.particles))"
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
