@@ -4,7 +4,7 @@ from dataclasses import InitVar, dataclass, field
 
 import numpy as np
 
-from solver.layout import Layout
+from solver.layout import Layout, shared_corners
 from solver.state import Floats, Ints
 from solver.step import Model
 
@@ -30,10 +30,7 @@ class Gaps:
         self.chosen, self.spacing = patches(layout.X), float(np.sqrt(layout.V0.mean()))
         bent = None if layout.bent is None else layout.bent[self.chosen]
         part = Layout(layout.X[self.chosen], layout.V0[self.chosen], layout.r0[self.chosen], bent)
-        places = part.corners.reshape(-1, 2)
-        quantum = 1e-4 * self.spacing
-        steps = np.rint((places - places.min(axis=0)) / quantum + 0.31).astype(np.int64)  # no corner on a half
-        self.owner = np.unique(steps @ (1 << 32, 1), return_inverse=True)[1].reshape(-1)
+        self.owner = shared_corners(part)[1].reshape(-1)
 
     def look(self, model: Model) -> None:
         """Measure now."""

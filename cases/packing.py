@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from cases.study import Packed
 from mms.manufacture import Manufactured
-from solver.layout import Layout
+from solver.layout import Layout, shared_corners
 from solver.model import RunFailed
 from solver.state import Floats, Grid, Ints
 from solver.step import Model
@@ -67,12 +67,9 @@ def outline(layout: Layout) -> tuple[Floats, float]:
 
     Faces that meet have the same bits where they do, or a row of cells could be said to pass both of them or none.
     """
-    corners = layout.corners.reshape(-1, 2)
-    quantum = 1.047e-7 * np.ptp(corners, axis=0).max()  # no round number: a corner half-way between two would be two
-    steps = np.rint((corners - corners.min(axis=0)) / quantum).astype(np.int64)
-    _, first, inverse = np.unique(steps @ (1 << 32, 1), return_index=True, return_inverse=True)
-    shared, number = corners[first][inverse].reshape(-1, 4, 2), inverse.reshape(-1, 4)
-    pairs = np.sort(np.stack([number, np.roll(number, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1) @ (len(first), 1)
+    places, number = shared_corners(layout)
+    shared = places[number]
+    pairs = np.sort(np.stack([number, np.roll(number, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1) @ (len(places), 1)
     order = np.argsort(pairs, kind="stable")
     twice = np.flatnonzero(np.diff(pairs[order]) == 0)
     one, other = order[twice], order[twice + 1]

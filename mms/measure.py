@@ -11,7 +11,7 @@ import numpy as np
 import sympy as sp
 
 from mms.manufacture import Manufactured
-from solver.layout import Layout
+from solver.layout import Layout, shared_corners
 from solver.state import Floats
 
 TIMES = 33  # even steps hit the extremes of a wave whose period divides the duration
@@ -90,13 +90,10 @@ def boundary(layout: Layout) -> tuple[Floats, Floats]:
 
     A face of one domain alone is on the edge. The normal at a corner is the mean of those of its two faces.
     """
-    corners = layout.corners.reshape(-1, 2)
-    quantum = 1e-7 * np.ptp(corners, axis=0).max()
-    _, first, number = np.unique(np.rint(corners / quantum), axis=0, return_index=True, return_inverse=True)
-    start = number.reshape(-1, 4)
+    places, start = shared_corners(layout)
     faces = np.stack([start, np.roll(start, -1, axis=1)], axis=-1).reshape(-1, 2)
     _, which, times = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
-    faces, X = faces[which[times == 1]], corners[first]
+    faces, X = faces[which[times == 1]], places
     along = X[faces[:, 1]] - X[faces[:, 0]]
     normal = np.stack([along[:, 1], -along[:, 0]], axis=-1) / np.hypot(*along.T)[:, None]
     total = np.zeros(X.shape)

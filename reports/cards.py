@@ -88,9 +88,7 @@ def _card(record: Record, found: Finding) -> Card:
 def divergence(record: Record, found: Finding) -> str:
     """Divergence said plainly, with the growth of rms against the fall of printed where both were measured."""
     d = found.declared
-    series = next(
-        s for s in record.series if (s.first.method, s.first.solution, s.first.ppc) == (d.method, d.solution, d.ppc)
-    )
+    series = record.series_of(d)
     name = "Classical MPM" if d.method == "mpm" else words.method(d.method)
     claim = f"{name} diverges here with refinement"
     true, printed = record.errors(series, d.quantity, "rms"), record.errors(series, d.quantity, "printed")

@@ -1,6 +1,5 @@
 """A comparison of many methods for a paper: the table of their orders and errors, and the lines of the cost figure."""
 
-from cases.series import Series
 from cases.verdicts import Finding
 from reports import style, words
 from reports.figures.convergence import methods
@@ -44,7 +43,7 @@ def _cell(record: Record, found: Finding | None) -> str:
     """`2.00, 1.2e-4`; `lost` where no run finished."""
     if found is None:
         return words.DASH
-    finished = [(run, e) for run, e in record.errors(_series(record, found), "u", "rms")]
+    finished = [(run, e) for run, e in record.errors(record.series_of(found.declared), "u", "rms")]
     if not finished:
         return "lost"
     result = record.result(finished[-1][0])
@@ -52,9 +51,3 @@ def _cell(record: Record, found: Finding | None) -> str:
     orders = found.verdict.local_orders
     text = f"{words.order(orders[-1]) if orders else words.DASH}, {share:.1e}".replace("e-0", "e-").replace("e+00", "")
     return text if not found.levels[-1].ended else f"{text} at {words.cell_size(finished[-1][0].cells)}, then lost"
-
-
-def _series(record: Record, found: Finding) -> Series:
-    d = found.declared
-    key = (d.method, d.solution, d.ppc)
-    return next(s for s in record.series if (s.first.method, s.first.solution, s.first.ppc) == key)

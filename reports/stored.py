@@ -8,7 +8,7 @@ from pathlib import Path
 from cases.axes import NOT_RUN, level, middle, replicated
 from cases.series import Series, collect
 from cases.store import Arrays, Store
-from cases.study import Result, Run, Study
+from cases.study import Declared, Result, Run, Study
 from cases.verdicts import Finding, findings
 
 
@@ -34,6 +34,10 @@ class Record:
     def series(self) -> list[Series]:
         """One a method, solution and particle count; methods as declared by the study, fewest particles first."""
         return collect(self.study.runs)
+
+    def series_of(self, declared: Declared) -> Series:
+        """The refinement that a declared quantity is measured on."""
+        return next(s for s in self.series if s.head == (declared.method, declared.solution, declared.ppc))
 
     @property
     def solutions(self) -> list[str]:

@@ -5,7 +5,7 @@ from math import isqrt, pi
 
 import numpy as np
 
-from solver.state import Floats
+from solver.state import Floats, Ints
 
 Offset = tuple[float, float]
 CENTRED: Offset = (0.0, 0.0)
@@ -32,6 +32,15 @@ class Layout:
     def corners(self) -> Floats:
         """Corners (P,4,2) of the pieces, counter-clockwise; neighbours share them."""
         return parallelograms(self.X, self.r0) if self.bent is None else self.bent
+
+
+def shared_corners(layout: Layout) -> tuple[Floats, Ints]:
+    """Places (C,2) of the corners of all pieces, each once, and for each piece which four are its own, (P,4)."""
+    corners = layout.corners.reshape(-1, 2)
+    quantum = 1.047e-7 * np.ptp(corners, axis=0).max()  # no round number: a corner half-way between two would be two
+    steps = np.rint((corners - corners.min(axis=0)) / quantum).astype(np.int64)
+    _, first, number = np.unique(steps @ (1 << 32, 1), return_index=True, return_inverse=True)
+    return corners[first], number.reshape(-1, 4)
 
 
 def parallelograms(centre: Floats, r: Floats) -> Floats:
