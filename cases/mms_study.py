@@ -169,6 +169,6 @@ def canonical(package: str, specification: str) -> str:
     plugin: Any = create(package, specification)
     values = {item.name: (getattr(plugin, item.name), item.default) for item in fields(plugin)}
     changed = [
-        f"{key}={repr(value).removesuffix('.0')}" for key, (value, usual) in sorted(values.items()) if value != usual
+        f"{key}={str(value).removesuffix('.0')}" for key, (value, usual) in sorted(values.items()) if value != usual
     ]
     return ":".join([split(absolute(specification))[0], *filter(None, [",".join(changed)])])

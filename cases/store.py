@@ -32,6 +32,16 @@ class StoreError(Exception):
     """The folder cannot be read or written; the message is one line that says what to do."""
 
 
+def make(folder: Path) -> None:
+    """The folder, new or there."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise StoreError(
+            f"cannot make the study folder {folder}: {error.strerror}; give a writable one with --out"
+        ) from error
+
+
 class Store:
     """Results on disk below `folder`. Raises StoreError where the folder cannot be made, read or written."""
 
@@ -41,7 +51,7 @@ class Store:
 
     def create(self, study: Study) -> None:
         """Make the folder and write study.json; Results already there stay, a broken study.json is not written over."""
-        self._make()
+        make(self.runs)
         for leftover in self.runs.glob(".*"):  # of a process that was killed while it wrote
             with suppress(FileNotFoundError):
                 if time.time() - leftover.stat().st_mtime > HOUR:
@@ -102,7 +112,7 @@ class Store:
     @contextmanager
     def locked(self) -> Iterator[None]:
         """Hold the folder for this process; another that asks meanwhile gets a StoreError, and not the same runs."""
-        self._make()
+        make(self.runs)
         handle = os.open(self.folder, os.O_RDONLY)  # the folder itself: a file for it would be one more in the study
         try:
             fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -113,15 +123,6 @@ class Store:
             yield
         finally:
             os.close(handle)
-
-    def _make(self) -> None:
-        """The folder, new or there."""
-        try:
-            self.runs.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise StoreError(
-                f"cannot make the study folder {self.folder}: {error.strerror}; give a writable one with --out"
-            ) from error
 
     @staticmethod
     def write(path: Path, data: bytes) -> None:

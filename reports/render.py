@@ -1,17 +1,13 @@
 """A study folder -> report.html, figures/ and tables/; from what is stored alone, and the same bytes each time."""
 
-import base64
 import re
-from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from matplotlib.figure import Figure
 
 from cases.store import Store, StoreError
 from cases.study import QUANTITIES, Run
-from reports import audited, show, show_axes, show_graded, show_runs, style, tables, words
+from reports import audited, show, show_axes, show_graded, show_runs, tables, words
 from reports.cards import cards, summary
 from reports.cost import compares
 from reports.figures import graded
@@ -22,6 +18,7 @@ from reports.figures.local_orders import local_order_figure
 from reports.figures.particles import particles
 from reports.figures.position import position
 from reports.figures.time_step import time_step
+from reports.page import Add, Image, adder, template
 from reports.show_cost import figure_rows, overview
 from reports.stalls import looked, stalls
 from reports.stored import Record, read
@@ -29,18 +26,6 @@ from reports.stored import Record, read
 TIME = "Error of u in rms against the Courant number on the finest cells, both axes logarithmic; numbers in the table."
 PLACE = "Error of u in rms over the median of its level, with the particles at several places; numbers in the tables."
 COUNT = "error of u in rms against the particles per cell, a line a cell size; numbers in the table."
-TEMPLATES = Path(__file__).resolve().parent / "templates"
-
-
-@dataclass(frozen=True)
-class Image:
-    """A figure inside the page: its SVG as data, and what it shows in words."""
-
-    name: str
-    data: str
-    alt: str
-    width: int
-    height: int
 
 
 def render(folder: Path, cells: int = CELLS, ppc: int = PPC, record: Record | None = None) -> Path:
@@ -70,9 +55,7 @@ def render(folder: Path, cells: int = CELLS, ppc: int = PPC, record: Record | No
 
 def _page(record: Record, folder: Path, field: tuple[int, int]) -> str:
     """The HTML text; figures are drawn on the way."""
-    environment = Environment(loader=FileSystemLoader(TEMPLATES), undefined=StrictUndefined, autoescape=True)
-    environment.trim_blocks = environment.lstrip_blocks = True
-    return environment.get_template("report.html.j2").render(
+    return template("report.html.j2").render(
         record=record,
         study=record.study,
         summary=summary(record),
@@ -95,7 +78,7 @@ def _page(record: Record, folder: Path, field: tuple[int, int]) -> str:
 def _solution(record: Record, solution: str, folder: Path, field: tuple[int, int]) -> dict[str, object]:
     """Figures and blind spots of one solution; figure files carry its name where the study has several."""
     end = "_" + re.sub(r"[^A-Za-z0-9]+", "_", solution) if len(record.solutions) > 1 else ""
-    add = _adder(folder, end)
+    add = adder(folder, end)
     drawn = convergence(record, solution)
     add("figure1", drawn["figure1"], "")
     chosen = [choose(record, method, solution, *field) for method in methods(record)]
@@ -131,26 +114,15 @@ def _cost(record: Record, folder: Path) -> Image | None:
     if not compares(record):
         return None
     drawn = cost_figure(record, figure_rows(record))
-    return _adder(folder, "")("cost", drawn, "Error of u, as a share of the exact rms, against updates and time.")
+    return adder(folder, "")("cost", drawn, "Error of u, as a share of the exact rms, against updates and time.")
 
 
-def _maybe(add: Callable[[str, Figure, str], Image], name: str, figure: Figure | None, alt: str) -> Image | None:
+def _maybe(add: Add, name: str, figure: Figure | None, alt: str) -> Image | None:
     """An Image where there is a figure."""
     return add(name, figure, alt) if figure else None
 
 
-def _adder(folder: Path, end: str) -> Callable[[str, Figure, str], Image]:
-    """A function that saves a figure under a name and gives it as an Image; its halves are saved as SVG alone."""
-
-    def add(name: str, figure: Figure, alt: str) -> Image:
-        svg = style.save(figure, folder, name + end, ("svg",) if name.startswith("figure1_") else ("svg", "pdf", "png"))
-        width, height = (round(96 * inches) for inches in figure.get_size_inches())
-        return Image(name + end, "data:image/svg+xml;base64," + base64.b64encode(svg).decode(), alt, width, height)
-
-    return add
-
-
-def _field(record: Record, run: Run, add: Callable[[str, Figure, str], Image]) -> Image | None:
+def _field(record: Record, run: Run, add: Add) -> Image | None:
     """The error field of one run; None where its particles are not stored."""
     arrays = record.arrays(run)
     if not ({"corners"} <= arrays.keys() or {"x", "F", "r0"} <= arrays.keys()) or "error_u" not in arrays:

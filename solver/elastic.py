@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from math import inf, sqrt
 
+from solver.state import Particles
+
 
 @dataclass(frozen=True)
 class Elastic:
@@ -30,6 +32,9 @@ class Elastic:
     def lam(self) -> float:
         """Lame's first constant."""
         return self.E * self.nu / ((1 + self.nu) * (1 - 2 * self.nu))
+
+    def start(self, particles: Particles) -> None:
+        """A law of F alone keeps nothing of the path."""
 
     def wave_speed(self) -> float:
         """Compression wave in the undeformed state, sqrt((lam + 2 mu) / rho0)."""

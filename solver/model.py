@@ -23,6 +23,9 @@ class Material(Protocol):
 
     rho0: float
 
+    def start(self, particles: Particles) -> None:
+        """History at the start of a run."""
+
     def update(self, particles: Particles, dt: float) -> None:
         """Stress at the end of a step of length dt."""
 
@@ -72,6 +75,7 @@ class Model:
     def __post_init__(self) -> None:
         self.lost = np.full(-(-len(self.particles) // CHUNK), -1)
         self.crossed = np.zeros(len(self.lost), np.int64)
+        self.material.start(self.particles)
         self.slabs.sort(self.grid, self.particles)
         self.scheme.transfer.start(self)
 

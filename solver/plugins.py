@@ -17,6 +17,7 @@ from solver.sources import TOP
 METHODS, MATERIALS, SOLUTIONS, CASES = "solver.basis", "solver.material", "mms.solutions", "cases.library"
 LAYOUTS = "mms.layouts"
 TRANSFERS = "solver.transfers"
+RATES, MISREADINGS = "solver.rates", "solver.misreadings"
 KINDS = {
     METHODS: "method",
     MATERIALS: "material",
@@ -24,6 +25,8 @@ KINDS = {
     CASES: "case",
     TRANSFERS: "transfer",
     LAYOUTS: "layout",
+    RATES: "rate",
+    MISREADINGS: "misreading",
 }
 
 
@@ -105,15 +108,15 @@ def create(package: str, specification: str) -> Any:
     """
     name, rest = split(specification)
     plugin = load(package, name)
-    allowed = [item.name for item in fields(plugin)]
-    parameters: dict[str, float] = {}
+    allowed = {item.name: item.type for item in fields(plugin)}
+    parameters: dict[str, float | str] = {}
     for item in filter(None, rest.split(",")):
         key, _, value = item.partition("=")
         if key not in allowed:
             raise ValueError(f"{name} has no parameter {key!r}; it has {', '.join(allowed) or 'none'}")
         if key in parameters:
             raise ValueError(f"{name}: {key} is given twice")
-        parameters[key] = number(name, key, value)
+        parameters[key] = value if allowed[key] in (str, "str") else number(name, key, value)
     return plugin(**parameters)
 
 

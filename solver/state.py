@@ -67,7 +67,8 @@ class Particles:
     X, x, v, b (P,2): reference place, place, velocity, body force per mass; F (P,2,2); sigma (P,4): Cauchy stress
     xx, yy, zz, xy, tension positive; m, V0 (P,): mass, initial volume; domain (P,W): what the basis keeps of the
     particle's domain; carried (P,C): numbers of the caller that travel with their particle; B (P,4 or 0): what a
-    transfer keeps of a particle's velocity besides v.
+    transfer keeps of a particle's velocity besides v; F_old (P,4 or 0), history (P,H): what a law in rate form keeps,
+    F at the end of the last step and its memory of the path.
     """
 
     X: Floats
@@ -81,6 +82,8 @@ class Particles:
     sigma: Floats = field(init=False)
     carried: Floats = field(init=False)
     B: Floats = field(init=False)
+    F_old: Floats = field(init=False)
+    history: Floats = field(init=False)
     id: Ints = field(init=False)
 
     def __post_init__(self) -> None:
@@ -88,6 +91,7 @@ class Particles:
         self.x, self.v, self.b = self.X.copy(), np.zeros((count, 2)), np.zeros((count, 2))
         self.F, self.sigma = np.tile(np.eye(2), (count, 1, 1)), np.zeros((count, 4))
         self.carried, self.B, self.id = np.zeros((count, 0)), np.zeros((count, 0)), np.arange(count)
+        self.F_old, self.history = np.zeros((count, 0)), np.zeros((count, 0))
 
     def __len__(self) -> int:
         return len(self.X)

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from xml.etree import ElementTree
 
+from cases.checks import Examination
 from cases.records import Outcome
 from cases.study import Study
 from cases.verdicts import Finding
@@ -38,5 +39,22 @@ def write_junit(path: Path, study: Study, found: Sequence[Finding]) -> None:
     outcomes = [f.verdict.outcome for f in judged]
     suite.set("errors", str(outcomes.count(Outcome.ERROR)))
     suite.set("failures", str(outcomes.count(Outcome.FAIL) + outcomes.count(Outcome.INCONCLUSIVE)))
+    ElementTree.indent(suite)
+    ElementTree.ElementTree(suite).write(path, encoding="utf-8", xml_declaration=True)
+
+
+def write_checks(path: Path, examination: Examination) -> None:
+    """The checks of an examination as JUnit XML; OSError where it cannot be written."""
+    checks = examination.checks
+    suite = ElementTree.Element("testsuite", name=examination.name, tests=str(len(checks)))
+    for check in checks:
+        case = ElementTree.SubElement(suite, "testcase", classname=f"{examination.name}.{check.group}", name=check.name)
+        if check.outcome is not Outcome.PASS:
+            kind = "error" if check.outcome is Outcome.ERROR else "failure"
+            message = f"{check.found:.8g}, expected {check.way} {check.expected:.8g}, {check.within:.3g}"
+            ElementTree.SubElement(case, kind, type=str(check.outcome), message=message)
+    outcomes = [check.outcome for check in checks]
+    suite.set("errors", str(outcomes.count(Outcome.ERROR)))
+    suite.set("failures", str(outcomes.count(Outcome.FAIL)))
     ElementTree.indent(suite)
     ElementTree.ElementTree(suite).write(path, encoding="utf-8", xml_declaration=True)

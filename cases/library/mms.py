@@ -211,7 +211,7 @@ def snapshot(run: Run, model: Model, comparison: Comparison) -> Arrays:
     return arrays
 
 
-def parameters(kind: str, specification: str) -> dict[str, float]:
+def parameters(kind: str, specification: str) -> dict[str, Any]:
     """Every parameter of a solution or material, the defaults too."""
     package = {"solution": SOLUTIONS, "material": MATERIALS}[kind]
     return {f"{kind} {key}": value for key, value in asdict(create(package, specification)).items()}

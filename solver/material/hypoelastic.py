@@ -1,0 +1,42 @@
+"""Hypoelastic solid, the linear elastic law of the paper's section 2.2: rate of sigma = lam tr(D) I + 2 mu D.
+
+In uniaxial strain sigma = (lam + 2 mu) ln(stretch). It has no energy: no manufactured solution can be derived for it.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from solver._jit import kernel
+from solver.elastic import Elastic
+from solver.objective import RESPOND
+from solver.rate_law import RateLaw
+from solver.state import Floats
+
+
+@kernel(RESPOND)
+def respond(constants, sigma, de, history):
+    """sigma += lam tr(de) I + 2 mu de; constants lam, mu."""
+    lam = constants[0]
+    shear = 2.0 * constants[1]
+    for b in range(sigma.shape[0] // 4):
+        bulk = lam * (de[3 * b] + de[3 * b + 1])
+        sigma[4 * b] += bulk + shear * de[3 * b]
+        sigma[4 * b + 1] += bulk + shear * de[3 * b + 1]
+        sigma[4 * b + 2] += bulk
+        sigma[4 * b + 3] += shear * de[3 * b + 2]
+
+
+@dataclass(frozen=True)
+class Hypoelastic(RateLaw, Elastic):
+    """Parameters E, nu, rho0 and the rate."""
+
+    respond = staticmethod(respond)
+
+    def __post_init__(self) -> None:
+        Elastic.__post_init__(self)
+        RateLaw.__post_init__(self)
+
+    def constants(self) -> Floats:
+        """lam, mu."""
+        return np.array([self.lam, self.mu])

@@ -1,0 +1,59 @@
+"""Objective integration of rate-type laws: the stress is carried along with the motion, the law sees the strain alone.
+
+A *rate* (solver/rates) is two kernels over the flat arrays of a block. `unrotate(F0, F1, sigma, de)` brings the Cauchy
+stress at the start of the step into the frame of the law, in place, and writes the strain increment D dt in that frame;
+`rotate(F0, F1, sigma)` brings the stress that the law gives to the end of the step. A *law* is one kernel in between,
+`respond(constants, sigma, de, history)`. F0, F1: xx, xy, yx, yy; sigma: xx, yy, zz, xy; de: xx, yy, xy (of the tensor).
+
+Strain increments are those of the middle of the step, L dt = (F1 - F0) ((F0 + F1)/2)^-1: second order, and without
+strain in a rigid rotation of any angle. With F0 in place of the mean a rotation by a strains by -a^2/2 a step.
+"""
+
+from typing import ClassVar
+
+import numpy as np
+from numba import prange
+
+from solver._jit import BLOCK, F1, F2, F3, Function, function_type, kernel, nothing
+
+UNROTATE, ROTATE, RESPOND = nothing(F1, F1, F1, F1), nothing(F1, F1, F1), nothing(F1, F1, F1, F1)
+SIGNATURE = nothing(
+    function_type(UNROTATE), function_type(ROTATE), function_type(RESPOND), F1, F2, F3, F2, F2
+)  # fmt: skip
+
+
+class Rate:
+    """How stress goes along with the motion; `order` in time of what comes out, 0 if it does not converge."""
+
+    order: ClassVar[float]
+    unrotate: ClassVar[Function]
+    rotate: ClassVar[Function]
+
+
+@kernel(nothing(function_type(UNROTATE), function_type(ROTATE), function_type(RESPOND), F1, F1, F1, F1, F1, F1))
+def integrate_block(unrotate, rotate, respond, constants, F_old, F, sigma, history, de):
+    """One step of a block, all arrays flat; F becomes F_old of the next."""
+    unrotate(F_old, F, sigma, de)
+    respond(constants, sigma, de, history)
+    rotate(F_old, F, sigma)
+    for a in range(F.shape[0]):
+        F_old[a] = F[a]
+
+
+@kernel(SIGNATURE, parallel=True)
+def integrate(unrotate, rotate, respond, constants, F_old, F, sigma, history):
+    """One step of all particles: F_old (P,4) at the start and F (P,2,2) at the end; sigma (P,4), history (P,H)."""
+    count = F.shape[0]
+    memory = history.shape[1]
+    olds = F_old.reshape(-1)
+    Fs = F.reshape(-1)
+    sigmas = sigma.reshape(-1)
+    histories = history.reshape(-1)
+    for block in prange((count + BLOCK - 1) // BLOCK):
+        lo = block * BLOCK
+        hi = min(lo + BLOCK, count)
+        de = np.empty(3 * BLOCK)
+        integrate_block(
+            unrotate, rotate, respond, constants, olds[4 * lo : 4 * hi], Fs[4 * lo : 4 * hi],
+            sigmas[4 * lo : 4 * hi], histories[memory * lo : memory * hi], de[: 3 * (hi - lo)],
+        )  # fmt: skip

@@ -1,0 +1,53 @@
+"""What a law in rate form is: one kernel that responds to strain increments, and an objective rate around it."""
+
+from dataclasses import dataclass
+from typing import ClassVar, cast
+
+import numpy as np
+
+from solver._jit import Function
+from solver.objective import Rate, integrate
+from solver.plugins import MISREADINGS, RATES, available, load
+from solver.state import Floats, Particles
+
+
+@dataclass(frozen=True)
+class RateLaw:
+    """`rate`: the objective rate, a file of solver/rates; raises ValueError for another.
+
+    A subclass has `respond`, a kernel of solver.objective.RESPOND, its `constants` (k,), and in `memory` the names of
+    what it keeps of the path, one column of Particles.history each. Negative controls (solver/misreadings) are taken as
+    a rate too: they are there to be seen failing.
+    """
+
+    rate: str = "green_naghdi"
+    memory: ClassVar[tuple[str, ...]] = ()
+    respond: ClassVar[Function]
+
+    def __post_init__(self) -> None:
+        self.frame()
+
+    def frame(self) -> type[Rate]:
+        """The plug-in of the rate."""
+        return cast("type[Rate]", load(MISREADINGS if self.rate in available(MISREADINGS) else RATES, self.rate))
+
+    def constants(self) -> Floats:
+        """What the kernel reads."""
+        raise NotImplementedError
+
+    def initial(self, sigma: Floats) -> Floats:
+        """History (P,H) of particles under the stress sigma (P,4) that have seen nothing yet."""
+        return np.zeros((len(sigma), len(self.memory)))
+
+    def start(self, particles: Particles) -> None:
+        """F at the start of the first step, and the history, unless it goes on from an earlier run."""
+        if not particles.F_old.size:
+            particles.F_old = particles.F.reshape(-1, 4).copy()
+            particles.history = self.initial(particles.sigma)
+
+    def update(self, particles: Particles, dt: float) -> None:
+        """Write particles.sigma and history, from F_old and the new F; the step's length does not matter."""
+        frame, p = self.frame(), particles
+        integrate(
+            frame.unrotate, frame.rotate, self.respond, self.constants(), p.F_old, p.F, p.sigma, p.history
+        )  # fmt: skip

@@ -1,0 +1,110 @@
+"""What a command does that examines one thing: compute, store, make the page, print the checks, say it in the code."""
+
+import json
+from collections.abc import Callable
+from dataclasses import asdict
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+import typer
+
+from cases.checks import Check, Examination
+from verify.output import printing
+
+CODES = {"PASS": 0, "FAIL": 1, "ERROR": 1, "INCONCLUSIVE": 3}
+VERSION = 1
+
+
+def conduct(
+    compute: Callable[[], Examination],
+    draw: Callable[[Path, Examination], Path],
+    folder: Path,
+    json_output: bool = False,
+    junit: Path | None = None,
+) -> int:
+    """Returns the exit code; what is wrong with the input is one line and exit code 2."""
+    from cases.checks import save
+    from verify.conduct import usage
+    from verify.junit import check_junit, write_checks
+
+    with usage():
+        check_junit(junit)
+        examination = compute()
+        save(folder, examination)
+        page = draw(folder, examination)
+        if junit:
+            write_checks(junit, examination)
+    with printing():
+        if json_output:
+            typer.echo(document(examination, page))
+        else:
+            show(examination, page)
+    return CODES[examination.outcome]
+
+
+def document(examination: Examination, page: Path) -> str:
+    """One JSON document: the checks with their outcomes; a number that is not finite is null."""
+    content = {
+        "version": VERSION,
+        "examination": examination.name,
+        "outcome": str(examination.outcome),
+        "lead": examination.lead,
+        "parameters": examination.parameters,
+        "checks": [told(check) for check in examination.checks],
+        "report": str(page),
+    }
+    return json.dumps(content, indent=1, allow_nan=False, ensure_ascii=False)
+
+
+def told(check: Check) -> dict[str, Any]:
+    """A check for JSON."""
+    found = {key: None if isinstance(v, float) and not isfinite(v) else v for key, v in asdict(check).items()}
+    return {**found, "outcome": str(check.outcome)}
+
+
+def show(examination: Examination, page: Path) -> None:
+    """Print each part with how many of its checks pass, those that do not with their numbers, and the page's path."""
+    from rich.table import Table
+    from rich.text import Text
+
+    from verify.table import STYLES, Listened
+
+    out = Listened(highlight=False, soft_wrap=False)
+    if not out.is_terminal:
+        out.width = max(out.width, 100)
+    out.print(Text(f"\n{examination.title}", "bold"))
+    table = Table(box=None, pad_edge=False, header_style="dim")
+    for name in ("", "part", "checks", "pass", "closest call"):
+        table.add_column(name, justify="right" if name in ("checks", "pass") else "left")
+    for group in examination.groups:
+        checks = [check for check in examination.checks if check.group == group]
+        if checks:
+            missed = [check for check in checks if check.outcome != "PASS"]
+            worst = str(missed[0].outcome) if missed else "PASS"
+            table.add_row(
+                Text(worst, STYLES[worst]), group, str(len(checks)), str(len(checks) - len(missed)), closest(checks)
+            )
+    out.print(table)
+    for check in examination.checks:
+        if check.outcome != "PASS":
+            out.print(Text.assemble((str(check.outcome), STYLES[check.outcome]), f" {check.group}: {sentence(check)}"))
+    out.print(Text(f"\n{examination.lead}"))
+    out.print(f"\nreport: {page}", soft_wrap=True)
+
+
+def sentence(check: Check) -> str:
+    """What was found, and what it is held against."""
+    within = f" within {check.within:.3g}" if check.within else ""
+    way = f"{check.way} " if check.way.startswith("at") else ""
+    relative = " of it" if check.way == "relative" else ""
+    return f"{check.name} is {check.found:.8g}, expected {way}{check.expected:.8g}{within}{relative} ({check.source})"
+
+
+def closest(checks: list[Check]) -> str:
+    """The check that uses most of what it is allowed."""
+    bands = [check for check in checks if check.within]
+    if not bands:
+        return ""
+    most = max(bands, key=lambda check: check.miss / check.within)
+    return f"{most.name}: off by {most.miss:.2g} of {most.within:.2g} allowed"
