@@ -70,7 +70,7 @@ class Examination:
     parameters: dict[str, str] = field(default_factory=dict)
     notes: dict[str, tuple[str, ...]] = field(default_factory=dict)
     environment: dict[str, str] = field(default_factory=dict)
-    curves: Curves = field(default_factory=dict, compare=False)
+    curves: dict[str, Any] = field(default_factory=dict, compare=False)  # Curves; pydantic knows no arrays
     format: int = FORMAT
 
     @property
@@ -86,7 +86,7 @@ class Examination:
         return tuple(dict.fromkeys([*(check.group for check in self.checks), *self.notes]))
 
 
-ADAPTER: TypeAdapter[Examination] = TypeAdapter(Examination, config={"arbitrary_types_allowed": True})
+ADAPTER: TypeAdapter[Examination] = TypeAdapter(Examination)
 
 
 def save(folder: Path, examination: Examination) -> None:

@@ -51,3 +51,65 @@ def pushed(xx, yy, xy, axx, axy, ayx, ayy):
     tyx = ayx * xx + ayy * xy
     tyy = ayx * xy + ayy * yy
     return txx * axx + txy * axy, tyx * ayx + tyy * ayy, txx * ayx + txy * ayy
+
+
+@kernel(inline=True)
+def turn_stress(b, sigma, c, s):
+    """Stress of particle b turned by (c, s), in place; zz stays."""
+    xx, yy, xy = turned(sigma[4 * b], sigma[4 * b + 1], sigma[4 * b + 3], c, s)
+    sigma[4 * b] = xx
+    sigma[4 * b + 1] = yy
+    sigma[4 * b + 3] = xy
+
+
+@kernel(inline=True)
+def push_stress(b, sigma, Axx, Axy, Ayx, Ayy, scale):
+    """Stress of particle b pushed by A and multiplied by `scale`, in place; zz is scaled alone."""
+    xx, yy, xy = pushed(sigma[4 * b], sigma[4 * b + 1], sigma[4 * b + 3], Axx, Axy, Ayx, Ayy)
+    sigma[4 * b] = scale * xx
+    sigma[4 * b + 1] = scale * yy
+    sigma[4 * b + 2] = scale * sigma[4 * b + 2]
+    sigma[4 * b + 3] = scale * xy
+
+
+@kernel(inline=True)
+def turned_strain(b, de, F0, F1, c, s):
+    """Strain increment of the middle of the step, turned by (c, s), written for particle b."""
+    Lxx, Lxy, Lyx, Lyy = step_gradient(b, F0, F1)
+    xx, yy, xy = turned(Lxx, Lyy, 0.5 * (Lxy + Lyx), c, s)
+    de[3 * b] = xx
+    de[3 * b + 1] = yy
+    de[3 * b + 2] = xy
+
+
+@kernel(inline=True)
+def half_turn(w):
+    """Cosine and sine of half the rotation of a spin w: that of the Cayley map, by 2 atan(w/2), orthogonal exactly."""
+    c = 1.0 / np.sqrt(1.0 + 0.25 * w * w)
+    return c, 0.5 * w * c
+
+
+@kernel(inline=True)
+def rotation_of(b, F):
+    """Cosine and sine of R of particle b."""
+    return polar(F[4 * b], F[4 * b + 1], F[4 * b + 2], F[4 * b + 3])
+
+
+@kernel(inline=True)
+def rotation_between(b, F0, F1):
+    """Cosine and sine of R of (F0 + F1)/2, the middle of the step."""
+    xx, xy = F0[4 * b] + F1[4 * b], F0[4 * b + 1] + F1[4 * b + 1]
+    yx, yy = F0[4 * b + 2] + F1[4 * b + 2], F0[4 * b + 3] + F1[4 * b + 3]
+    return polar(xx, xy, yx, yy)
+
+
+@kernel(inline=True)
+def pulled_strain(b, de, F0, F1):
+    """F0^T D F0 dt of particle b: what stands where R0 belongs in some misreadings."""
+    Lxx, Lxy, Lyx, Lyy = step_gradient(b, F0, F1)
+    xx, yy, xy = pushed(
+        Lxx, Lyy, 0.5 * (Lxy + Lyx), F0[4 * b], F0[4 * b + 2], F0[4 * b + 1], F0[4 * b + 3]
+    )  # fmt: skip
+    de[3 * b] = xx
+    de[3 * b + 1] = yy
+    de[3 * b + 2] = xy

@@ -21,7 +21,9 @@ Load = Callable[[Particles, float], None]
 class Material(Protocol):
     """A law: writes particles.sigma (and its history) once a step, from the new F."""
 
-    rho0: float
+    @property
+    def rho0(self) -> float:
+        """Density at reference."""
 
     def start(self, particles: Particles) -> None:
         """History at the start of a run."""

@@ -1,6 +1,7 @@
 """What a law in rate form is: one kernel that responds to strain increments, and an objective rate around it."""
 
 from dataclasses import dataclass
+from functools import cache
 from typing import ClassVar, cast
 
 import numpy as np
@@ -25,11 +26,7 @@ class RateLaw:
     respond: ClassVar[Function]
 
     def __post_init__(self) -> None:
-        self.frame()
-
-    def frame(self) -> type[Rate]:
-        """The plug-in of the rate."""
-        return cast("type[Rate]", load(MISREADINGS if self.rate in available(MISREADINGS) else RATES, self.rate))
+        objective(self.rate)
 
     def constants(self) -> Floats:
         """What the kernel reads."""
@@ -47,7 +44,11 @@ class RateLaw:
 
     def update(self, particles: Particles, dt: float) -> None:
         """Write particles.sigma and history, from F_old and the new F; the step's length does not matter."""
-        frame, p = self.frame(), particles
-        integrate(
-            frame.unrotate, frame.rotate, self.respond, self.constants(), p.F_old, p.F, p.sigma, p.history
-        )  # fmt: skip
+        frame, p = objective(self.rate), particles
+        integrate(frame.unrotate, frame.rotate, self.respond, self.constants(), p.F_old, p.F, p.sigma, p.history)
+
+
+@cache
+def objective(name: str) -> type[Rate]:
+    """The plug-in of a rate, looked for once a process. Raises ValueError that lists the rates for another name."""
+    return cast("type[Rate]", load(MISREADINGS if name in available(MISREADINGS) else RATES, name))

@@ -14,6 +14,7 @@ from verify.graded import graded
 from verify.list import list_plugins
 from verify.methods import methods
 from verify.mms import mms
+from verify.objectivity import objectivity
 from verify.report import report
 
 USAGE, STOPPED = 2, 130
@@ -24,6 +25,7 @@ app.command("methods")(methods)
 app.command("graded")(graded)
 app.command("audit")(audit)
 app.command("expectations")(expectations)
+app.command("objectivity")(objectivity)
 app.command("list")(list_plugins)
 app.command("report")(report)
 

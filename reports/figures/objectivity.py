@@ -1,0 +1,120 @@
+"""The paper's Figure 2 and what belongs to it: stress of a turned block, its inertial share, orders, rates in shear."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from cases.checks import Curves
+from reports import style
+from solver.state import Floats
+
+Curve = Mapping[str, Floats]
+LABELS = {"xx": "\N{GREEK SMALL LETTER SIGMA}$_{xx}$", "yy": "\N{GREEK SMALL LETTER SIGMA}$_{yy}$",
+          "xy": "\N{GREEK SMALL LETTER SIGMA}$_{xy}$"}  # fmt: skip
+WIDE, HIGH = 5.4, 4.6
+SPARSE = 12  # samples between two marks
+
+
+def _panel(**settings: Any) -> tuple[Figure, Axes]:
+    """A figure of one panel."""
+    figure = Figure(figsize=(WIDE, HIGH), layout="constrained")
+    axes = figure.subplots()
+    axes.set(**settings)
+    return figure, axes
+
+
+def stresses(exact: Curve, block: Curve) -> Figure:
+    """Figure 2: mean stress of the block over |sigma_v| against time, marks on the closed form."""
+    with rc_context(style.RC):
+        figure, axes = _panel(xlabel="time [s]", ylabel="mean stress / |σ$_v$|, tension positive", xlim=(0, 2))
+        for place, name in enumerate(("xx", "yy", "xy")):
+            axes.plot(exact["t"], exact[name], linewidth=1.4, color=style.COLOURS[place], label=LABELS[name])
+            axes.plot(block["t"][::SPARSE], block[name][::SPARSE], linestyle="none", marker=style.MARKERS[place],
+                      markersize=5, markerfacecolor="white", color=style.COLOURS[place])  # fmt: skip
+        axes.axvline(1.0, color=style.GREY, linewidth=0.8)
+        axes.set_ylim(-1.15, 0.4)
+        figure.legend(loc="outside lower center", ncols=3)
+    return figure
+
+
+def co_rotated(runs: Mapping[str, Curve]) -> Figure:
+    """Shear stress as the turning box sees it: the mean, and the largest of a particle."""
+    with rc_context(style.RC):
+        figure, axes = _panel(xlabel="time [s]", ylabel="|co-rotated shear stress| / |σ$_v$|", xlim=(1, 2))
+        for place, (label, curve) in enumerate(runs.items()):
+            late = curve["t"] > 1.0
+            axes.plot(curve["t"][late], np.abs(curve["own_xy"][late]), color=style.COLOURS[place],
+                      label=f"{label}: mean")  # fmt: skip
+            axes.plot(curve["t"][late], curve["shear"][late], color=style.COLOURS[place], linestyle=":",
+                      label="largest of a particle")  # fmt: skip
+        axes.set_yscale("log")
+        axes.set_ylim(1e-5, 0.5)
+        figure.legend(loc="outside lower center", ncols=2)
+    return figure
+
+
+def inertia(runs: Mapping[str, Curve]) -> Figure:
+    """Mean vertical stress in the frame of the box less its static value, over |sigma_v|."""
+    with rc_context(style.RC):
+        figure, axes = _panel(xlabel="time [s]", ylabel="co-rotated σ$_{yy}$ / |σ$_v$| + 1", xlim=(1, 2))
+        for place, (label, curve) in enumerate(runs.items()):
+            late = curve["t"] > 1.0
+            axes.plot(curve["t"][late], curve["own_yy"][late] + 1, color=style.COLOURS[place], label=label,
+                      linestyle=("-", "--", ":")[place % 3])  # fmt: skip
+        figure.legend(loc="outside lower center", ncols=1)
+    return figure
+
+
+def misread(exact: Curve, controls: Mapping[str, Curve]) -> Figure:
+    """Shear stress of Figure 2 by each misreading, the exact one as a broad line below."""
+    with rc_context(style.RC):
+        figure, axes = _panel(xlabel="time [s]", ylabel="σ$_{xy}$ / |σ$_v$|", xlim=(1, 2), ylim=(-0.75, 0.75))
+        late = exact["t"] >= 1.0
+        axes.plot(exact["t"][late], exact["xy"][late], color=style.LIGHT, linewidth=7, label="exact")
+        _lines(axes, [(name, curve["t"], curve["xy"]) for name, curve in controls.items()])
+        figure.legend(loc="outside lower center", ncols=3, fontsize=9.5)
+    return figure
+
+
+def orders(errors: Mapping[str, Curve], rates: Sequence[str]) -> Figure:
+    """Error against the number of steps, rates in full lines and misreadings in broken ones."""
+    with rc_context(style.RC):
+        figure, axes = _panel(xlabel="steps in a quarter turn", ylabel="error of the stress at the end, relative")
+        for place, (name, curve) in enumerate(errors.items()):
+            right = name in rates
+            axes.plot(curve["steps"], curve["error"], color=style.COLOURS[place % len(style.COLOURS)],
+                      marker=style.MARKERS[place % len(style.MARKERS)], markersize=5,
+                      linestyle="-" if right else "--", markerfacecolor=None if right else "white",
+                      label=name.replace("_", " "))  # fmt: skip
+        axes.set(xscale="log", yscale="log")
+        ticks = next(iter(errors.values()))["steps"]
+        axes.set_xticks(ticks, [f"{n:g}" for n in ticks])
+        axes.minorticks_off()
+        figure.legend(loc="outside lower center", ncols=3, fontsize=9.5)
+    return figure
+
+
+def shear(exact: Curves, computed: Curves, component: str) -> Figure:
+    """A stress component in simple shear over G, by each rate: the closed forms, marks for what was computed."""
+    with rc_context(style.RC):
+        symbol = {"s12": "σ$_{12}$", "s11": "σ$_{11}$"}[component]
+        figure, axes = _panel(xlabel="shear γ", ylabel=f"{symbol} / G", xlim=(0, 8), ylim=(-2, 8))
+        for place, (name, curve) in enumerate(exact.items()):
+            axes.plot(curve["gamma"], curve[component], color=style.COLOURS[place], label=name.replace("_", " "))
+            marks = computed[name]
+            axes.plot(marks["gamma"], marks[component], linestyle="none", marker=style.MARKERS[place], markersize=5,
+                      markerfacecolor="white", color=style.COLOURS[place])  # fmt: skip
+        figure.legend(loc="outside lower center", ncols=4, columnspacing=1.2, handlelength=1.6)
+    return figure
+
+
+def _lines(axes: Axes, lines: Sequence[tuple[str, Floats, Floats]]) -> None:
+    """Lines that can be told apart without colour."""
+    styles = ("-", "--", "-.", ":")
+    for place, (name, x, y) in enumerate(lines):
+        axes.plot(x, y, color=style.COLOURS[place % len(style.COLOURS)], linestyle=styles[place % len(styles)],
+                  linewidth=1.5, label=name.replace("_", " "))  # fmt: skip

@@ -1,0 +1,109 @@
+"""Drucker-Prager soil: the smooth cone beside Mohr-Coulomb, linear elastic, perfectly plastic, flow by psi <= phi.
+
+F = sqrt(J2) + a p - b <= 0, p = tr(sigma)/3, tension positive; flow along the gradient of sqrt(J2) + d p. The apex is
+that of Mohr-Coulomb, p = c cot phi, so b = a c cot phi. Two cones:
+
+plane_strain: strength and dilation of Mohr-Coulomb where plane strain fails. There the elastic strain rests, so plastic
+    strain has no zz: s_zz = -2/3 d sqrt(J2). With it, radius t and centre s of Mohr's circle have
+    t = sqrt(1 - d^2/3) sqrt(J2), s = p + d/3 sqrt(J2), and flow has volume to shear d / sqrt(1 - d^2/3) = sin psi. So
+    d = n sin psi, a = (sin phi / n) / (1 + sin phi sin psi / 3), n = (1 + sin^2 psi / 3)^(-1/2);
+    for psi = phi it is a = 3 tan phi / sqrt(9 + 12 tan^2 phi) (Drucker & Prager 1952).
+compression: the edge s1 = s2, a = 6 sin phi / (sqrt(3) (3 - sin phi)), d alike with psi (de Souza Neto, Peric & Owen
+    2008, chapter 6). In plane strain it is stronger than Mohr-Coulomb.
+
+The return is radial or to the apex (chapter 8 there); with psi = 0 the latter is a projection, as in mohr_coulomb.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import radians, sin, sqrt, tan
+from typing import ClassVar
+
+import numpy as np
+
+from solver._jit import kernel
+from solver.elastic import Elastic
+from solver.material.mohr_coulomb import check_strength
+from solver.objective import RESPOND
+from solver.principal import in_order, in_plane
+from solver.rate_law import RateLaw
+from solver.state import Floats
+
+
+@kernel(RESPOND)
+def respond(constants, sigma, de, history):
+    """Elastic trial stress, and its return where it is not admissible; history gamma_p, eps_v_p."""
+    lam, shear, slope, strength = constants[0], constants[1], constants[2], constants[3]
+    for b in range(sigma.shape[0] // 4):
+        bulk = lam * (de[3 * b] + de[3 * b + 1])
+        xx = sigma[4 * b] + (bulk + shear * de[3 * b])
+        yy = sigma[4 * b + 1] + (bulk + shear * de[3 * b + 1])
+        zz = sigma[4 * b + 2] + bulk
+        xy = sigma[4 * b + 3] + shear * de[3 * b + 2]
+        p = (xx + yy + zz) / 3.0
+        sxx, syy, szz = xx - p, yy - p, zz - p
+        root = np.sqrt(0.5 * (sxx * sxx + syy * syy + szz * szz) + xy * xy)
+        excess = root + slope * p - strength
+        if not excess <= 0.0:
+            up, down, _ = in_plane(xx, yy, xy)
+            t1, _, t3 = in_order(up, down, zz)
+            step = excess * constants[4]
+            finite = 0.0 * (xx + yy + zz + xy)  # the apex is finite whatever comes in: a lost state stays lost
+            share, mean = finite, constants[6] + finite
+            if step < root:
+                share, mean = 1.0 - step / root, p - step * constants[5]
+            history[2 * b] += (1.0 - share) * (t1 - t3) / shear
+            history[2 * b + 1] += (p - mean) * constants[7]
+            xx, yy, zz, xy = mean + share * sxx, mean + share * syy, mean + share * szz, share * xy
+        sigma[4 * b] = xx
+        sigma[4 * b + 1] = yy
+        sigma[4 * b + 2] = zz
+        sigma[4 * b + 3] = xy
+
+
+def plane_strain(phi: float, psi: float) -> tuple[float, float]:
+    """a and d of the cone that fails as Mohr-Coulomb in plane strain; angles in degrees."""
+    n = 1 / sqrt(1 + sin(radians(psi)) ** 2 / 3)
+    return sin(radians(phi)) / n / (1 + sin(radians(phi)) * sin(radians(psi)) / 3), n * sin(radians(psi))
+
+
+def compression(phi: float, psi: float) -> tuple[float, float]:
+    """a and d of the cone through the compression edges of Mohr-Coulomb; angles in degrees."""
+    a, d = (6 * sin(radians(angle)) / (sqrt(3) * (3 - sin(radians(angle)))) for angle in (phi, psi))
+    return a, d
+
+
+CONES: dict[str, Callable[[float, float], tuple[float, float]]] = {
+    "plane_strain": plane_strain,
+    "compression": compression,
+}
+
+
+@dataclass(frozen=True)
+class DruckerPrager(RateLaw, Elastic):
+    """Parameters, history, and ValueError as in mohr_coulomb, no cut-off; `cone`: plane_strain or compression."""
+
+    E: float = 840e3
+    rho0: float = 2650.0
+    phi: float = 31.0
+    psi: float = 1.0
+    c: float = 0.0
+    cone: str = "plane_strain"
+    memory: ClassVar[tuple[str, ...]] = ("gamma_p", "eps_v_p")
+    respond = staticmethod(respond)
+
+    def __post_init__(self) -> None:
+        Elastic.__post_init__(self)
+        RateLaw.__post_init__(self)
+        check_strength(self.phi, self.psi, self.c)
+        if self.cone not in CONES:
+            raise ValueError(f"cone = {self.cone!r} must be one of {', '.join(CONES)}")
+
+    def constants(self) -> Floats:
+        """lam, 2 mu, a, b, and factors of the return."""
+        a, d = CONES[self.cone](self.phi, self.psi)
+        stiff = self.lam + 2 * self.mu / 3  # bulk modulus
+        ratio, apex = d * stiff / self.mu, self.c / tan(radians(self.phi))
+        return np.array(
+            [self.lam, 2 * self.mu, a, a * apex, 1 / (1 + a * ratio), ratio, apex, 1 / stiff]
+        )  # fmt: skip

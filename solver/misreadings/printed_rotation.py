@@ -1,0 +1,35 @@
+"""The printed formulas with R in place of F: R0^T sigma R0, the law, then R1^T sigma R1.
+
+The stretch is out of it, and the second rotation still has the wrong sense. It does not converge.
+"""
+
+from typing import ClassVar
+
+from solver._jit import kernel
+from solver.frames import rotation_of, turn_stress, turned_strain
+from solver.objective import ROTATE, UNROTATE, Rate
+
+
+@kernel(UNROTATE)
+def unrotate(F0, F1, sigma, de):
+    """sigma <- R0^T sigma R0; de = R0^T (D dt) R0."""
+    for b in range(sigma.shape[0] // 4):
+        c, s = rotation_of(b, F0)
+        turn_stress(b, sigma, c, -s)
+        turned_strain(b, de, F0, F1, c, -s)
+
+
+@kernel(ROTATE)
+def rotate(F0, F1, sigma):
+    """sigma <- R1^T sigma R1."""
+    for b in range(sigma.shape[0] // 4):
+        c, s = rotation_of(b, F1)
+        turn_stress(b, sigma, c, -s)
+
+
+class PrintedRotation(Rate):
+    """R transposed at both ends."""
+
+    order: ClassVar[float] = 0.0
+    unrotate = staticmethod(unrotate)
+    rotate = staticmethod(rotate)

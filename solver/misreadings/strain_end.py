@@ -1,0 +1,36 @@
+"""Green-Naghdi with the strain increment in the frame of the step's end: R1^T D R1.
+
+Only first order in time, and right where the body turns without strain or strains without turning.
+"""
+
+from typing import ClassVar
+
+from solver._jit import kernel
+from solver.frames import rotation_of, turn_stress, turned_strain
+from solver.objective import ROTATE, UNROTATE, Rate
+
+
+@kernel(UNROTATE)
+def unrotate(F0, F1, sigma, de):
+    """sigma <- R0^T sigma R0; de = R1^T (D dt) R1."""
+    for b in range(sigma.shape[0] // 4):
+        c, s = rotation_of(b, F0)
+        turn_stress(b, sigma, c, -s)
+        cd, sd = rotation_of(b, F1)
+        turned_strain(b, de, F0, F1, cd, -sd)
+
+
+@kernel(ROTATE)
+def rotate(F0, F1, sigma):
+    """sigma <- R1 sigma R1^T."""
+    for b in range(sigma.shape[0] // 4):
+        c, s = rotation_of(b, F1)
+        turn_stress(b, sigma, c, s)
+
+
+class StrainEnd(Rate):
+    """D turned by the rotation of the end."""
+
+    order: ClassVar[float] = 1.0
+    unrotate = staticmethod(unrotate)
+    rotate = staticmethod(rotate)
