@@ -1,4 +1,3 @@
-# mypy: disallow-untyped-defs=False
 """Principal stresses of plane strain: two in the plane and zz, sorted, and the way back. Closed form, no trigonometry.
 
 zz is a principal stress like the others and takes part in the sort: under plane strain it need not be the intermediate

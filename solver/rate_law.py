@@ -43,8 +43,13 @@ class RateLaw:
             particles.history = self.initial(particles.sigma)
 
     def update(self, particles: Particles, dt: float) -> None:
-        """Write particles.sigma and history, from F_old and the new F; the step's length does not matter."""
+        """Write particles.sigma and history, from F_old and the new F; the step's length does not matter.
+
+        Raises ValueError for particles that the law has not started: there is no F to go on from.
+        """
         frame, p = objective(self.rate), particles
+        if p.F_old.shape[1:] != (4,) or p.history.shape[1:] != (len(self.memory),):
+            raise ValueError(f"{type(self).__name__} must start the particles before it updates them")
         integrate(frame.unrotate, frame.rotate, self.respond, self.constants(), p.F_old, p.F, p.sigma, p.history)
 
 

@@ -1,6 +1,7 @@
 """Grid and Particles: structures of arrays, float64, C order; plane strain, one system of units."""
 
 from dataclasses import dataclass, field, fields
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -48,11 +49,13 @@ class Grid:
     velocity = property(lambda self: self.motion[:, :2])
     acceleration = property(lambda self: self.motion[:, 2:])
 
-    @property
+    @cached_property
     def nodes(self) -> Floats:
-        """Places of the nodes, (n, 2)."""
+        """Places of the nodes, (n, 2); not to be written."""
         i, j = np.divmod(np.arange(self.nx * self.ny), self.ny)
-        return self.origin + self.dx * np.stack([i, j], axis=1)
+        nodes: Floats = self.origin + self.dx * np.stack([i, j], axis=1)
+        nodes.flags.writeable = False
+        return nodes
 
     def cell(self, x: Floats) -> Ints:
         """Cell (column, row) that holds a place, counted from the domain's lower corner; x (..., 2) -> (..., 2)."""
