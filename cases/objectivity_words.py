@@ -65,8 +65,9 @@ def words(block: Block, printed: Curve, small: Curve, rest: Curve) -> dict[str, 
             the readings that leave D where it was (strain_start, strain_end, strain_fixed) give the right figure.
             They show in a turn with strain, at first order. And a frame that stretches (stretched_frame) depends on
             the strain at which the block is turned.""",
-            """The formulas as printed, F^T sigma F at both ends, do not reproduce Figure 2. So either they are a slip
-            of the pen or the figure was made otherwise.""",
+            """The formulas as printed, F^T sigma F at both ends, do not reproduce Figure 2: the shear stress flickers
+            and quickly dies out, and so do the normal stresses, which the paper's figure keeps. So they are a slip of
+            the pen, or the figure was made otherwise.""",
         ),
         "Orders in time": plain(
             """F(t) = R(pi t / 2) diag(1 - t/5, 1), t from 0 to 1: the body is compressed along its own axis while it
