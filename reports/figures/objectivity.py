@@ -7,6 +7,7 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from cases.checks import Curves
 from reports import style
@@ -28,17 +29,24 @@ def _panel(**settings: Any) -> tuple[Figure, Axes]:
     return figure, axes
 
 
-def stresses(exact: Curve, block: Curve) -> Figure:
-    """Figure 2: mean stress of the block over |sigma_v| against time, marks on the closed form."""
+def stresses(exact: Curve, blocks: Mapping[str, Curve]) -> Figure:
+    """Figure 2, a panel a block: its mean stress over |sigma_v| against time, marks on lines of the closed form."""
     with rc_context(style.RC):
-        figure, axes = _panel(xlabel="time [s]", ylabel="mean stress / |σ$_v$|, tension positive", xlim=(0, 2))
-        for place, name in enumerate(("xx", "yy", "xy")):
-            axes.plot(exact["t"], exact[name], linewidth=1.4, color=style.COLOURS[place], label=LABELS[name])
-            axes.plot(block["t"][::SPARSE], block[name][::SPARSE], linestyle="none", marker=style.MARKERS[place],
-                      markersize=5, markerfacecolor="white", color=style.COLOURS[place])  # fmt: skip
-        axes.axvline(1.0, color=style.GREY, linewidth=0.8)
-        axes.set_ylim(-1.15, 0.4)
-        figure.legend(loc="outside lower center", ncols=3)
+        figure = Figure(figsize=(WIDE * len(blocks), HIGH), layout="constrained")
+        panels = figure.subplots(1, len(blocks), squeeze=False, sharey=True)[0]
+        for axes, (title, block) in zip(panels, blocks.items(), strict=True):
+            axes.set(xlabel="time [s]", xlim=(0, 2), ylim=(-1.15, 0.4), title=title)
+            axes.axvline(1.0, color=style.GREY, linewidth=0.8)
+            for place, name in enumerate(("xx", "yy", "xy")):
+                axes.plot(exact["t"], exact[name], linewidth=1.4, color=style.COLOURS[place])
+                axes.plot(block["t"][::SPARSE], block[name][::SPARSE], linestyle="none", marker=style.MARKERS[place],
+                          markersize=5, markerfacecolor="white", color=style.COLOURS[place])  # fmt: skip
+        panels[0].set_ylabel("mean stress / |σ$_v$|, tension positive")
+        handles = [
+            Line2D([], [], color=style.COLOURS[k], marker=style.MARKERS[k], markerfacecolor="white", label=LABELS[name])
+            for k, name in enumerate(("xx", "yy", "xy"))
+        ]
+        figure.legend(handles=handles, loc="outside lower center", ncols=3)
     return figure
 
 
