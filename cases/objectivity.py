@@ -8,7 +8,7 @@ from cases import objectivity_block as full
 from cases import objectivity_kinematic as kinematic
 from cases.checks import Check, Curves, Examination
 from cases.environment import environment
-from cases.objectivity_exact import SIMPLE_SHEAR
+from cases.objectivity_exact import SIMPLE_SHEAR, ramped_column
 from cases.objectivity_words import words
 from cases.turning_block import Block
 from solver.plugins import MISREADINGS, RATES, available
@@ -59,6 +59,8 @@ def curves(block: Block, found: full.Found, errors: dict[str, Floats], controls:
     exact = kinematic.exact_figure2(block, np.linspace(0, 2, 401))
     kept: Curves = {"exact": exact}
     kept |= {f"run/{name}": run["mean"] for name, (run, _) in found.items() if run["mean"]["t"].size}
+    t = np.linspace(0, 1, 201)
+    kept["wave"] = {"t": t, "yy": ramped_column(t, block.law.wave_speed(), block.L)}
     kept |= {f"field/{name}": run["field"] for name, (run, _) in found.items()}
     kept |= {f"figure2/{name}": curve for name, curve in controls.items()}
     right = available(RATES)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cases.checks import Check, Curves
-from cases.objectivity_exact import rotated
+from cases.objectivity_exact import ramped_column, rotated
 from cases.turning_block import Block, execute
 from solver.plugins import MISREADINGS, available
 from solver.state import Floats
@@ -56,6 +56,9 @@ def checks(block: Block, found: Found) -> list[Check]:
     K0 = block.nu / (1 - block.nu)
     end = int(np.argmin(np.abs(small["t"] - 1.0)))
     peak = (1 - K0) / 2
+    ramp = large["t"] <= 1.0
+    wave = ramped_column(large["t"][ramp], block.law.wave_speed(), block.L)
+    ripple = float(np.sqrt(((large["yy"][ramp] - wave) ** 2).mean()))
     static, closed = "static equilibrium", "closed form, stress turned with the block"
     away = np.array([large["own_yy"][turning(large)].mean() + 1, rest["own_yy"][turning(rest)].mean() + 1])
     shear = float(np.sqrt((small["own_xy"][late] ** 2).mean()))
@@ -67,6 +70,8 @@ def checks(block: Block, found: Found) -> list[Check]:
         Check(GROUP, "1 cm: horizontal stress after 90 degrees", small["xx"][-1], -1.0, "absolute", closed, 0.01),
         Check(GROUP, "1 cm: vertical stress after 90 degrees", small["yy"][-1], -K0, "absolute", closed, 0.01),
         Check(GROUP, "1 cm: co-rotated shear stress, rms over time", shear, 0.005, "at most", "zero by symmetry"),
+        Check(GROUP, "1 m: vertical stress in the ramp, rms distance", ripple, 0.003, "at most",
+              "linear waves in a column under growing gravity"),
         Check(GROUP, "1 m: inertial share of the mean vertical stress", away[0], away[1], "absolute",
               "the same box at rest, with inertial forces", 0.003),
         Check(GROUP, "1 m: largest distance in the turn", misses(large, block).max(), misses(small, block).max(),

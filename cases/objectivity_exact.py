@@ -19,6 +19,19 @@ def rotated(horizontal: Floats | float, vertical: Floats | float, angle: Floats)
     return stress
 
 
+def ramped_column(t: Floats, c: float, H: float, modes: int = 200) -> Floats:
+    """Mean vertical stress of an elastic column under a gravity that grows as t, over its static value at t = 1.
+
+    Linear waves of speed c in a height H, fixed below and free above, from rest: modes sin((2k-1) pi y / 2H).
+    """
+    n = 2.0 * np.arange(1, modes + 1) - 1
+    w = n * np.pi * c / (2 * H)
+    late = t[:, None] - np.sin(w * t[:, None]) / w
+    share = 32 / (np.pi * n) ** 3 * np.sign(np.sin(n * np.pi / 2))  # of a mode in the shortening at rest; they sum to 1
+    stress: Floats = -(late * share).sum(axis=1)
+    return stress
+
+
 def compressed(stretch: float, lam: float, mu: float, rate: str) -> Floats:
     """xx, yy, zz of a hypoelastic body stretched along x alone. All rates that turn give (C : ln U), Truesdell not."""
     if rate == "truesdell":

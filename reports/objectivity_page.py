@@ -43,7 +43,7 @@ def figure2(examination: Examination, add: Add) -> Section:
     curves, runs = examination.curves, of(examination.curves, "run")
     exact = curves["exact"]
     images = [
-        (add(f"figure2_{key}", draw.stresses(exact, {name: runs[name]}),
+        (add(f"figure2_{key}", draw.stresses(exact, {name: runs[name]}, curves["wave"] if key == "printed" else None),
              f"Mean stress of the {name} over time: lines of the closed form, marks of the CPDI run."),
          f"{name}: lines are the closed form, marks the mean over all particles of the CPDI run.")
         for key, name in (("printed", "block of 1 m"), ("small", "block of 1 cm"))

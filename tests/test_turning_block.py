@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from cases.objectivity_exact import ramped_column
 from cases.turning_block import OMEGA, RAMP, Block, Box, Gravity, angle_at, execute, setup, spin, turn
 from solver.step import advance
 
@@ -114,3 +115,18 @@ def test_angles() -> None:
 def test_no_such_block(cells: int, ppc: int) -> None:
     with pytest.raises(ValueError, match=r"must be from 4 to 128|is no square number"):
         Block(cells=cells, ppc=ppc)
+
+
+def test_the_ripple_of_the_ramp_is_the_blocks_own_vibration() -> None:
+    """The closed form meets the initial conditions and the run; the static line is 4 % off, the wave 0.2 %."""
+    t = np.array([0.0, 1e-3])
+    wave = ramped_column(t, 16.0, 1.0)
+    assert wave[0] == 0
+    assert wave[1] == pytest.approx(-(16.0**2) * t[1] ** 3 / 3, rel=1e-3)  # the top still falls freely, by g t^3 / 6
+    assert ramped_column(np.array([1.0]), 1e4, 1.0)[0] == pytest.approx(-1, abs=1e-3)
+    block = Block()
+    mean = execute(block)[0]["mean"]
+    ramp = mean["t"] <= RAMP
+    exact = ramped_column(mean["t"][ramp], block.law.wave_speed(), block.L)
+    assert np.abs(mean["yy"][ramp] - exact).max() < 0.003
+    assert np.abs(mean["yy"][ramp] + mean["t"][ramp]).max() > 0.03

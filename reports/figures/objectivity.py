@@ -29,8 +29,11 @@ def _panel(**settings: Any) -> tuple[Figure, Axes]:
     return figure, axes
 
 
-def stresses(exact: Curve, blocks: Mapping[str, Curve]) -> Figure:
-    """Figure 2, a panel a block: its mean stress over |sigma_v| against time, marks on lines of the closed form."""
+def stresses(exact: Curve, blocks: Mapping[str, Curve], wave: Curve | None = None) -> Figure:
+    """Figure 2, a panel a block: its mean stress over |sigma_v| against time, marks on lines of the closed form.
+
+    `wave`: vertical stress of the first block with its own vibration, in the ramp.
+    """
     with rc_context(style.RC):
         figure = Figure(figsize=(WIDE * len(blocks), HIGH), layout="constrained")
         panels = figure.subplots(1, len(blocks), squeeze=False, sharey=True)[0]
@@ -41,6 +44,8 @@ def stresses(exact: Curve, blocks: Mapping[str, Curve]) -> Figure:
                 axes.plot(exact["t"], exact[name], linewidth=1.4, color=style.COLOURS[place])
                 axes.plot(block["t"][::SPARSE], block[name][::SPARSE], linestyle="none", marker=style.MARKERS[place],
                           markersize=5, markerfacecolor="white", color=style.COLOURS[place])  # fmt: skip
+        if wave:
+            panels[0].plot(wave["t"], wave["yy"], color=style.INK, linewidth=0.9)
         panels[0].set_ylabel("mean stress / |σ$_v$|, tension positive")
         handles = [
             Line2D([], [], color=style.COLOURS[k], marker=style.MARKERS[k], markerfacecolor="white", label=LABELS[name])
