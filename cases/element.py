@@ -1,0 +1,113 @@
+"""One element of a law without a grid: strains or stresses are given, the rest is found, step by step.
+
+The law works in its own frame, so no rotation is involved. Strains are logarithmic, tensor components xx, yy, xy,
+tension positive, zz = 0 (plane strain). A law in rate form is asked by its kernel; a law of F by F = exp(strain).
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from solver.rate_law import RateLaw
+from solver.state import Floats, Particles
+
+TOLERANCE, ATTEMPTS, NUDGE = 1e-13, 60, 1e-7
+
+
+class ElementFailed(Exception):  # noqa: N818 - what cannot go on is a result
+    """The step cannot be solved; the message says why."""
+
+
+@dataclass(frozen=True)
+class State:
+    """strain (3,): xx, yy, xy; sigma (4,): xx, yy, zz, xy; history (H,)."""
+
+    strain: Floats
+    sigma: Floats
+    history: Floats
+
+
+# Residuals (3,) of a step, zero where it is as asked: of the strain increment (3,) and of the state at its end.
+Control = Callable[[Floats, State], Floats]
+
+
+@dataclass(frozen=True)
+class Element:
+    """A law, as a function of states."""
+
+    law: Any
+
+    def start(self, sigma: Floats) -> State:
+        """The state under the stress sigma (4,); a law of F starts undeformed whatever it is."""
+        if isinstance(self.law, RateLaw):
+            return State(np.zeros(3), sigma.copy(), self.law.initial(sigma[None])[0])
+        return State(np.zeros(3), np.zeros(4), np.zeros(0))
+
+    def step(self, state: State, increments: Floats) -> list[State]:
+        """The states after each of the strain increments (n,3), all from the same state."""
+        count = len(increments)
+        strains = state.strain + increments
+        if isinstance(self.law, RateLaw):
+            sigma, history = np.tile(state.sigma, count), np.tile(state.history, count)
+            self.law.respond(self.law.constants(), sigma, np.ascontiguousarray(increments).ravel(), history)
+            rows, memories = sigma.reshape(count, 4), history.reshape(count, -1)
+        else:
+            p = Particles(np.zeros((count, 2)), np.ones(count), np.ones(count), np.zeros((count, 0)))
+            p.F = np.array([stretch(strain) for strain in strains])
+            self.law.update(p, 1.0)
+            rows, memories = p.sigma, np.zeros((count, 0))
+        return [State(*parts) for parts in zip(strains, rows, memories, strict=True)]
+
+    def solve(self, state: State, control: Control, guess: Floats, scale: Floats) -> State:
+        """The state after one step under a control; `scale` (3,) is the size of its residuals. Raises ElementFailed.
+
+        Newton with a tangent by differences, and half the step where that does not bring the residual down: a corner
+        of a yield surface has a tangent on either side. It ends at round-off: where no shorter step is better.
+        """
+        nudge = NUDGE * max(1e-6, float(np.abs(guess).max()))
+        x, best = guess.copy(), np.inf
+        for _ in range(ATTEMPTS):
+            moves = x + nudge * np.vstack([np.zeros(3), np.eye(3)])
+            ends = self.step(state, moves)
+            residuals = np.array([control(move, end) / scale for move, end in zip(moves, ends, strict=True)])
+            best = float(np.abs(residuals[0]).max())
+            if not np.isfinite(residuals).all():
+                raise ElementFailed("a stress that is not finite")
+            if best < TOLERANCE:
+                return ends[0]
+            try:
+                newton = np.linalg.solve((residuals[1:] - residuals[0]).T / nudge, -residuals[0])
+            except np.linalg.LinAlgError:
+                raise ElementFailed("no strain leads there: the tangent is singular") from None
+            better = self._shorten(state, control, x, newton, scale, best)
+            if better is None:
+                break
+            x = better
+        if best < 1e-9:
+            return self.step(state, x[None])[0]
+        raise ElementFailed(f"no strain leads there: {best:.1e} of the stress is left")
+
+    def _shorten(
+        self, state: State, control: Control, x: Floats, move: Floats, scale: Floats, best: float
+    ) -> Floats | None:
+        """x after the longest of the halved moves that lessens the residual; None where none does."""
+        tried = x + move * 0.5 ** np.arange(12)[:, None]
+        for candidate, end in zip(tried, self.step(state, tried), strict=True):
+            left = float(np.abs(control(candidate, end) / scale).max())
+            if left < best:
+                return np.asarray(candidate)
+        return None
+
+
+def stretch(strain: Floats) -> Floats:
+    """exp of the strain xx, yy, xy (2,2), from its two principal values."""
+    values, axes = np.linalg.eigh(np.array([[strain[0], strain[2]], [strain[2], strain[1]]]))
+    stretched: Floats = (axes * np.exp(values)) @ axes.T
+    return stretched
+
+
+def unstrained(state: State) -> State:
+    """The same state, its strain counted from here."""
+    return replace(state, strain=np.zeros(3))

@@ -1,0 +1,263 @@
+"""UBCSAND: sand with hyperbolic hardening of the mobilised friction, primary loading (Beaty & Byrne 2011).
+
+In the plane, compression positive: s the centre and t the radius of Mohr's circle, s' = s + c cot phi_f, eta = t/s'.
+    elastic   G = KGe Pa (s/Pa)^ne,  K = KBe Pa (s/Pa)^me
+    yield     t = eta_m s',  eta_m the largest eta of the branch
+    hardening d eta = (Gp/s') (1 - Rf eta/eta_f)^2 d gamma_p,  Gp = KGp Pa (s/Pa)^np,  eta <= eta_f = sin phi_f
+    flow      d eps_v_p = (eta - eta_cv) d gamma_p, eta_cv = sin phi_pt: it contracts below eta_cv (dilation positive)
+The plane alone yields, as in the two-dimensional programs that the law comes from; zz follows (see `out_of_range`).
+Every modulus is that of the middle of the step, found by passes; hardening is integrated exactly, q = eta/(1 - a eta)
+growing by k d gamma_p with a = Rf/eta_f, k = Gp/s', so that a pass ends in a quadratic equation; the flow has the mean
+eta of the slip. Of order 4 in the step at constant s, of order 2 in general.
+
+Beyond the cut-off (s <= -sigma_t) all stresses vanish and eta_m is forgotten: what touches again loads as if new.
+
+With reversal=1, **our reading** of the cyclic law's cross-over, whose rules are not public: where the shear stress on
+the material's horizontal plane changes its sign, a new branch starts at the eta that is mobilised there, with a plastic
+stiffness times hfac1 hfac2 (4 + n/2) min(1, max(1/2, N/10)), n the number of reversals, N = (N1)60. It needs the
+material's own axes, hence the rate green_naghdi. Without it hfac1 to hfac6 are stored and have no effect: they belong
+to cyclic loading, and the paper's column has none.
+"""
+
+from dataclasses import dataclass, fields
+from math import inf, isfinite, radians, sin, sqrt, tan
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver._jit import kernel
+from solver.objective import RESPOND
+from solver.rate_law import RateLaw
+from solver.state import Floats
+
+PASSES = 3
+SETTLED = 1e-12  # of s: an elastic step need not be passed again
+MEMORY = ("eta_m", "gamma_p", "eps_v_p", "work_p", "reversals", "detached")
+
+
+@kernel(inline=True)
+def slip(t, s, G, stiff, D, a, k, eta_m):
+    """Plastic shear strain L > 0 with t - G L = eta(L) (s - stiff D L): the positive root, by the stable formula."""
+    q = eta_m / (1.0 - a * eta_m)
+    open_ = 1.0 + a * q
+    A = k * (stiff * D - G * a)
+    B = k * (a * t - s) + q * stiff * D - open_ * G
+    C = open_ * t - q * s
+    return 2.0 * C / (np.sqrt(B * B - 4.0 * A * C) - B)
+
+
+@kernel(RESPOND)
+def respond(constants, sigma, de, history):
+    """Stress and history at the end of the step; constants as in `Ubcsand.constants`."""
+    Ge, ne, Ke, me, Gp, n_p = constants[0], constants[1], constants[2], constants[3], constants[4], constants[5]
+    a, eta_f, eta_cv, per_Pa, s_min = constants[6], constants[7], constants[8], constants[9], constants[10]
+    shift, cut, reversal, secondary = constants[11], constants[12], constants[13], constants[14]
+    for b in range(sigma.shape[0] // 4):
+        xx, yy, zz, xy = sigma[4 * b], sigma[4 * b + 1], sigma[4 * b + 2], sigma[4 * b + 3]
+        dxx, dyy, dxy = de[3 * b], de[3 * b + 1], de[3 * b + 2]
+        eta_m = history[6 * b]
+        turns = history[6 * b + 4]
+        volume = dxx + dyy
+        start = -0.5 * (xx + yy)
+        s = start
+        eta = eta_m
+        ends = eta_m  # memory after the step
+        L = 0.0
+        D = 0.0
+        s_mid = start
+        eta_mid = eta_m
+        for _ in range(PASSES):
+            middle = s_mid if not (s_mid < s_min) else s_min
+            logarithm = np.log(middle * per_Pa)
+            power = np.exp(ne * logarithm)
+            G = Ge * power
+            K = Ke * (power if me == ne else np.exp(me * logarithm))
+            lam = K - 2.0 / 3.0 * G
+            stiff = K + G / 3.0
+            nxx = xx + lam * volume + 2.0 * G * dxx
+            nyy = yy + lam * volume + 2.0 * G * dyy
+            nzz = zz + lam * volume
+            nxy = xy + 2.0 * G * dxy
+            trial = -0.5 * (nxx + nyy)
+            half = 0.5 * (nxx - nyy)
+            t = np.sqrt(half * half + nxy * nxy)
+            memory = eta_m
+            stiffer = 1.0
+            crossed = reversal > 0.0 and xy * nxy < 0.0
+            if crossed:  # eta where the shear stress vanishes, on the way from the old stress to the trial
+                share = xy / (xy - nxy)
+                memory = abs(0.5 * (xx - yy) * (1.0 - share) + half * share)
+                memory = min(memory / (start + (trial - start) * share + shift), eta_f)
+                eta_mid = memory if L == 0.0 else eta_mid
+            if reversal > 0.0 and turns + crossed > 0.0:
+                stiffer = secondary * (4.0 + 0.5 * (turns + crossed))
+            L = 0.0
+            s = trial
+            ends = memory
+            eta = t / (trial + shift)
+            if not (trial <= cut) and not (t <= memory * (trial + shift)):
+                D = eta_cv - eta_mid
+                k = stiffer * Gp * np.exp(n_p * logarithm) / (middle + shift)
+                L = slip(t, trial + shift, G, stiff, D, a, k, memory)
+                first = memory / (1.0 - a * memory)
+                q = first + k * L
+                eta = q / (1.0 + a * q)
+                q = first + 0.5 * k * L
+                eta_mid = (memory + 4.0 * q / (1.0 + a * q) + eta) / 6.0  # mean over the slip, by Simpson's rule
+                if eta > eta_f:
+                    eta = eta_f
+                    eta_mid = eta_f
+                    D = eta_cv - eta_f
+                    L = (t - eta_f * (trial + shift)) / (G - eta_f * stiff * D)
+                s = trial - stiff * D * L
+                nzz += lam * D * L
+                ends = eta
+            before = s_mid
+            s_mid = 0.5 * (start + s)
+            if L == 0.0 and abs(s_mid - before) <= SETTLED * middle:
+                break
+        if s <= cut:
+            sigma[4 * b] = 0.0
+            sigma[4 * b + 1] = 0.0
+            sigma[4 * b + 2] = 0.0
+            sigma[4 * b + 3] = 0.0
+            history[6 * b] = 0.0
+            history[6 * b + 5] += 1.0
+        else:
+            if L != 0.0:
+                share = eta * (s + shift) / t
+                nxy *= share
+                history[6 * b + 1] += L
+                history[6 * b + 2] -= D * L
+                history[6 * b + 3] += (s_mid + shift) * (eta_mid + D) * L - shift * D * L
+                nxx = -s + half * share
+                nyy = -s - half * share
+            history[6 * b] = ends
+            history[6 * b + 4] = turns + crossed
+            sigma[4 * b] = nxx
+            sigma[4 * b + 1] = nyy
+            sigma[4 * b + 2] = nzz
+            sigma[4 * b + 3] = nxy
+
+
+@dataclass(frozen=True)
+class Ubcsand(RateLaw):
+    """The paper's Table 2: numbers KGe, KBe, KGp with exponents ne, me, np, angles phi_f, phi_pt in degrees, SI units.
+
+    Rf is not in that table, and decides how soon the strength is mobilised; the default is the generic correlation
+    1.1 N^-0.15 at N = (N1)60 = 10.7. `s_min`: s in the moduli is at least this, in units of Pa. `s_bound`: the largest
+    s that a run is meant to reach, for its time step alone (`wave_speed`), as the moduli have no limit.
+    Raises ValueError for what is out of range.
+
+    History: eta_m; gamma_p, plastic e1 - e3, summed; eps_v_p, its volume, dilation positive; work_p, plastic work per
+    volume; the number of reversals; how often the particle was detached.
+    """
+
+    KGe: float = 100.0
+    ne: float = 0.7
+    KBe: float = 125.0
+    me: float = 0.7
+    KGp: float = 5.0
+    np: float = 0.4
+    phi_f: float = 31.1
+    phi_pt: float = 31.0
+    c: float = 0.0
+    sigma_t: float = 0.0
+    Pa: float = 100e3
+    N: float = 10.7
+    Rf: float = 0.7708770538
+    hfac1: float = 0.65
+    hfac2: float = 0.85
+    hfac3: float = 1.0
+    hfac4: float = 0.6
+    hfac5: float = 1.0
+    hfac6: float = 0.95
+    s_min: float = 1e-4
+    s_bound: float = 20e3
+    rho0: float = 2650.0
+    reversal: float = 0.0
+    memory: ClassVar[tuple[str, ...]] = MEMORY
+    respond = staticmethod(respond)
+
+    def __post_init__(self) -> None:
+        RateLaw.__post_init__(self)
+        check(self)
+
+    @property
+    def eta_f(self) -> float:
+        """Failure ratio sin phi_f."""
+        return sin(radians(self.phi_f))
+
+    @property
+    def eta_cv(self) -> float:
+        """Ratio of constant volume, sin phi_pt."""
+        return sin(radians(self.phi_pt))
+
+    @property
+    def shift(self) -> float:
+        """c cot phi_f."""
+        return self.c / tan(radians(self.phi_f))
+
+    def moduli(self, s: float) -> tuple[float, float]:
+        """G and K at the in-plane mean stress s, compression positive."""
+        share = max(s / self.Pa, self.s_min)
+        return self.KGe * self.Pa * share**self.ne, self.KBe * self.Pa * share**self.me
+
+    def constants(self) -> Floats:
+        """What the kernel reads, in its order."""
+        secondary = self.hfac1 * self.hfac2 * min(1.0, max(0.5, 0.1 * self.N))
+        return np.array(
+            [self.KGe * self.Pa, self.ne, self.KBe * self.Pa, self.me, self.KGp * self.Pa, self.np,
+             self.Rf / self.eta_f, self.eta_f, self.eta_cv, 1 / self.Pa, self.s_min * self.Pa, self.shift,
+             -min(self.sigma_t, self.shift), self.reversal, secondary]
+        )  # fmt: skip
+
+    def initial(self, sigma: Floats) -> Floats:
+        """eta_m is what the stress mobilises, at most eta_f; nothing else has happened."""
+        history = np.zeros((len(sigma), len(MEMORY)))
+        s = -(sigma[:, 0] + sigma[:, 1]) / 2 + self.shift
+        t = np.hypot((sigma[:, 0] - sigma[:, 1]) / 2, sigma[:, 3])
+        history[:, 0] = np.clip(np.divide(t, s, out=np.zeros(len(s)), where=s > 0), 0, self.eta_f)
+        return history
+
+    def wave_speed(self) -> float:
+        """Compression wave sqrt((K + 4G/3)/rho0) at s_bound."""
+        G, K = self.moduli(self.s_bound)
+        return sqrt((K + 4 / 3 * G) / self.rho0)
+
+
+def out_of_range(sigma: Floats) -> NDArray[np.bool_]:
+    """Whether zz (P,) leaves the range of the principal stresses in the plane, where a three-dimensional law would
+    yield on other planes than this one."""
+    centre = (sigma[:, 0] + sigma[:, 1]) / 2
+    radius = np.hypot((sigma[:, 0] - sigma[:, 1]) / 2, sigma[:, 3])
+    outside: NDArray[np.bool_] = np.abs(sigma[:, 2] - centre) > radius * (1 + 1e-12)
+    return outside
+
+
+def check(law: Ubcsand) -> None:
+    """Raises ValueError with what is allowed."""
+    for item in fields(law):
+        value = getattr(law, item.name)
+        if item.name != "rate" and not isfinite(value):
+            raise ValueError(f"{item.name} = {value} must be finite")
+    for name in ("KGe", "KBe", "KGp", "Pa", "N", "s_min", "s_bound", "rho0"):
+        if not getattr(law, name) > 0:
+            raise ValueError(f"{name} = {getattr(law, name)} must be above zero")
+    for name in ("ne", "me", "np"):
+        if not 0 <= getattr(law, name) <= 1:
+            raise ValueError(f"{name} = {getattr(law, name)} must lie between 0 and 1")
+    if not 0 < law.phi_pt <= law.phi_f < 90:
+        raise ValueError(f"phi_pt = {law.phi_pt} must lie above 0 and not above phi_f = {law.phi_f}, below 90 degrees")
+    if not 0 <= law.Rf < 1:
+        raise ValueError(f"Rf = {law.Rf} must lie from 0 to below 1")
+    worst = max((K / G + 1 / 3) * law.eta_cv**2 / 4 for G, K in map(law.moduli, (law.s_min * law.Pa, law.s_bound)))
+    if worst >= 1:
+        raise ValueError(f"K/G must leave (K/G + 1/3) sin^2(phi_pt)/4 below 1, not {worst:.3g}: no step would end")
+    if not (0 <= law.c < inf and 0 <= law.sigma_t < inf):
+        raise ValueError(f"c = {law.c} and sigma_t = {law.sigma_t} must be zero or more")
+    if law.reversal not in (0, 1):
+        raise ValueError(f"reversal = {law.reversal} must be 0 or 1")
+    if law.reversal and law.rate != "green_naghdi":
+        raise ValueError(f"reversal=1 must have rate=green_naghdi, the material's own axes, not {law.rate}")
