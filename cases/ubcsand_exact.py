@@ -45,7 +45,7 @@ ETA_AT_TWO_PERCENT = 0.30674886089  # s = 5 kPa, total shear strain 0.02
 
 def hardening(law: Ubcsand, s: float) -> float:
     """k = Gp/s."""
-    return law.KGp * (s / law.Pa) ** (law.np - 1)
+    return float(law.KGp * (s / law.Pa) ** (law.np - 1))
 
 
 def plastic_shear(law: Ubcsand, s: float, eta: float) -> float:

@@ -118,10 +118,11 @@ def respond(constants, sigma, de, history):
             if L == 0.0 and abs(s_mid - before) <= SETTLED * middle:
                 break
         if s <= cut:
-            sigma[4 * b] = 0.0
-            sigma[4 * b + 1] = 0.0
-            sigma[4 * b + 2] = 0.0
-            sigma[4 * b + 3] = 0.0
+            nothing = 0.0 * (nxx + nyy + nzz + nxy)  # a lost state stays lost
+            sigma[4 * b] = nothing
+            sigma[4 * b + 1] = nothing
+            sigma[4 * b + 2] = nothing
+            sigma[4 * b + 3] = nothing
             history[6 * b] = 0.0
             history[6 * b + 5] += 1.0
         else:
