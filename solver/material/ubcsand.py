@@ -8,7 +8,8 @@ In the plane, compression positive: s the centre and t the radius of Mohr's circ
 The plane alone yields, as in the two-dimensional programs that the law comes from; zz follows (see `out_of_range`).
 Every modulus is that of the middle of the step, found by passes; hardening is integrated exactly, q = eta/(1 - a eta)
 growing by k d gamma_p with a = Rf/eta_f, k = Gp/s', so that a pass ends in a quadratic equation; the flow has the mean
-eta of the slip. Of order 4 in the step at constant s, of order 2 in general.
+eta of the slip. Slip is along the axes of stress in the middle of the plastic part of the step: along those of its end,
+as radial returns have it, turning axes (simple shear) cost an order. So of order 2, and 4 at constant s and axes.
 
 Beyond the cut-off (s <= -sigma_t) all stresses vanish and eta_m is forgotten: what touches again loads as if new.
 
@@ -32,6 +33,7 @@ from solver.rate_law import RateLaw
 from solver.state import Floats
 
 PASSES = 3
+CLOSE = 0.8  # cosine between the axes of the middle and of the end; beyond it the return is radial
 SETTLED = 1e-12  # of s: an elastic step need not be passed again
 MEMORY = ("eta_m", "gamma_p", "eps_v_p", "work_p", "reversals", "detached")
 
@@ -45,6 +47,25 @@ def slip(t, s, G, stiff, D, a, k, eta_m):
     B = k * (a * t - s) + q * stiff * D - open_ * G
     C = open_ * t - q * s
     return 2.0 * C / (np.sqrt(B * B - 4.0 * A * C) - B)
+
+
+@kernel(inline=True)
+def onset(eta, x0, y0, s0, x1, y1, s1):
+    """Share of the way from the old stress to the trial at which t = eta s' is met from inside; s' in s0 and s1."""
+    dx, dy, ds = x1 - x0, y1 - y0, s1 - s0
+    A = dx * dx + dy * dy - eta * eta * ds * ds
+    B = x0 * dx + y0 * dy - eta * eta * s0 * ds
+    C = x0 * x0 + y0 * y0 - eta * eta * s0 * s0
+    root = np.sqrt(max(B * B - A * C, 0.0))
+    share = -C / (B + root) if B > 0.0 else (root - B) / A
+    return min(max(share, 0.0), 1.0)
+
+
+@kernel(inline=True)
+def unit(x, y):
+    """A vector's direction."""
+    per = 1.0 / np.sqrt(x * x + y * y)
+    return x * per, y * per
 
 
 @kernel(RESPOND)
@@ -63,8 +84,8 @@ def respond(constants, sigma, de, history):
         s = start
         eta = eta_m
         ends = eta_m  # memory after the step
-        L = 0.0
-        D = 0.0
+        half0 = 0.5 * (xx - yy)
+        L = D = nx = ny = mx = my = 0.0
         s_mid = start
         eta_mid = eta_m
         for _ in range(PASSES):
@@ -84,10 +105,11 @@ def respond(constants, sigma, de, history):
             t = np.sqrt(half * half + nxy * nxy)
             memory = eta_m
             stiffer = 1.0
+            share = 0.0
             crossed = reversal > 0.0 and xy * nxy < 0.0
             if crossed:  # eta where the shear stress vanishes, on the way from the old stress to the trial
                 share = xy / (xy - nxy)
-                memory = abs(0.5 * (xx - yy) * (1.0 - share) + half * share)
+                memory = abs(half0 * (1.0 - share) + half * share)
                 memory = min(memory / (start + (trial - start) * share + shift), eta_f)
                 eta_mid = memory if L == 0.0 else eta_mid
             if reversal > 0.0 and turns + crossed > 0.0:
@@ -97,9 +119,16 @@ def respond(constants, sigma, de, history):
             ends = memory
             eta = t / (trial + shift)
             if not (trial <= cut) and not (t <= memory * (trial + shift)):
+                share = share if crossed else onset(memory, half0, xy, start + shift, half, nxy, trial + shift)
+                x_on = half0 + share * (half - half0)
+                y_on = xy + share * (nxy - xy)
+                radius = nx * half + ny * nxy  # along the new axes; slip along those of the middle shortens it by G_n
+                if not (nx * mx + ny * my > CLOSE and radius > memory * (trial + shift)):  # a first pass, a large step
+                    nx, ny, mx, my, radius = half / t, nxy / t, half / t, nxy / t, t
                 D = eta_cv - eta_mid
                 k = stiffer * Gp * np.exp(n_p * logarithm) / (middle + shift)
-                L = slip(t, trial + shift, G, stiff, D, a, k, memory)
+                G_n = G * (nx * mx + ny * my)
+                L = slip(radius, trial + shift, G_n, stiff, D, a, k, memory)
                 first = memory / (1.0 - a * memory)
                 q = first + k * L
                 eta = q / (1.0 + a * q)
@@ -109,10 +138,13 @@ def respond(constants, sigma, de, history):
                     eta = eta_f
                     eta_mid = eta_f
                     D = eta_cv - eta_f
-                    L = (t - eta_f * (trial + shift)) / (G - eta_f * stiff * D)
+                    L = (radius - eta_f * (trial + shift)) / (G_n - eta_f * stiff * D)
                 s = trial - stiff * D * L
                 nzz += lam * D * L
                 ends = eta
+                nx, ny = unit(half - G * L * mx, nxy - G * L * my)
+                fit = eta * (s + shift)
+                mx, my = unit(x_on + fit * nx, y_on + fit * ny)
             before = s_mid
             s_mid = 0.5 * (start + s)
             if L == 0.0 and abs(s_mid - before) <= SETTLED * middle:
@@ -127,13 +159,13 @@ def respond(constants, sigma, de, history):
             history[6 * b + 5] += 1.0
         else:
             if L != 0.0:
-                share = eta * (s + shift) / t
-                nxy *= share
+                radius = eta * (s + shift)
+                nxy = radius * ny
                 history[6 * b + 1] += L
                 history[6 * b + 2] -= D * L
                 history[6 * b + 3] += (s_mid + shift) * (eta_mid + D) * L - shift * D * L
-                nxx = -s + half * share
-                nyy = -s - half * share
+                nxx = -s + radius * nx
+                nyy = -s - radius * nx
             history[6 * b] = ends
             history[6 * b + 4] = turns + crossed
             sigma[4 * b] = nxx
