@@ -98,6 +98,14 @@ def test_order_in_the_step() -> None:
     assert (orders(errors) > 1.9).all()
 
 
+def test_order_with_turning_axes() -> None:
+    """Simple shear with some compression, whose principal axes turn: second order too, which a radial return is not."""
+    ends = [followed(LAW, confined(5e3), np.tile([0, -2e-3 / n, 0.01 / n], (n, 1)))[-1] for n in (25, 50, 100, 1600)]
+    errors = [np.abs(end.sigma - ends[-1].sigma).max() / 5e3 for end in ends[:-1]]
+    assert errors[-1] < 1e-4
+    assert (orders(errors) > 1.9).all()
+
+
 def one_pass(law: Ubcsand, gamma: float, s: float, steps: int) -> float:
     """eta by the plastic modulus at the start of each step, linearised: what the midpoint scheme is not."""
     a, k, eta = law.Rf / law.eta_f, law.KGp * (s / law.Pa) ** (law.np - 1), 0.0

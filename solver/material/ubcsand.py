@@ -28,6 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver._jit import kernel
+from solver.mobilised import onset, slip, unit
 from solver.objective import RESPOND
 from solver.rate_law import RateLaw
 from solver.state import Floats
@@ -36,36 +37,6 @@ PASSES = 3
 CLOSE = 0.8  # cosine between the axes of the middle and of the end; beyond it the return is radial
 SETTLED = 1e-12  # of s: an elastic step need not be passed again
 MEMORY = ("eta_m", "gamma_p", "eps_v_p", "work_p", "reversals", "detached")
-
-
-@kernel(inline=True)
-def slip(t, s, G, stiff, D, a, k, eta_m):
-    """Plastic shear strain L > 0 with t - G L = eta(L) (s - stiff D L): the positive root, by the stable formula."""
-    q = eta_m / (1.0 - a * eta_m)
-    open_ = 1.0 + a * q
-    A = k * (stiff * D - G * a)
-    B = k * (a * t - s) + q * stiff * D - open_ * G
-    C = open_ * t - q * s
-    return 2.0 * C / (np.sqrt(B * B - 4.0 * A * C) - B)
-
-
-@kernel(inline=True)
-def onset(eta, x0, y0, s0, x1, y1, s1):
-    """Share of the way from the old stress to the trial at which t = eta s' is met from inside; s' in s0 and s1."""
-    dx, dy, ds = x1 - x0, y1 - y0, s1 - s0
-    A = dx * dx + dy * dy - eta * eta * ds * ds
-    B = x0 * dx + y0 * dy - eta * eta * s0 * ds
-    C = x0 * x0 + y0 * y0 - eta * eta * s0 * s0
-    root = np.sqrt(max(B * B - A * C, 0.0))
-    share = -C / (B + root) if B > 0.0 else (root - B) / A
-    return min(max(share, 0.0), 1.0)
-
-
-@kernel(inline=True)
-def unit(x, y):
-    """A vector's direction."""
-    per = 1.0 / np.sqrt(x * x + y * y)
-    return x * per, y * per
 
 
 @kernel(RESPOND)
