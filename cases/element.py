@@ -5,7 +5,8 @@ tension positive, zz = 0 (plane strain). A law in rate form is asked by its kern
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,8 @@ import numpy as np
 from solver.rate_law import RateLaw
 from solver.state import Floats, Particles
 
-TOLERANCE, ATTEMPTS, NUDGE = 1e-13, 60, 1e-7
+TOLERANCE, ENOUGH = 1e-13, 1e-12  # of the residuals' scales: where Newton ends, and what round-off may leave
+ATTEMPTS, NUDGE = 60, 1e-7
 
 
 class ElementFailed(Exception):  # noqa: N818 - what cannot go on is a result
@@ -39,6 +41,12 @@ class Element:
 
     law: Any
 
+    @cached_property
+    def constants(self) -> Floats:
+        """What the kernel of a law in rate form reads."""
+        constants: Floats = self.law.constants()
+        return constants
+
     def start(self, sigma: Floats) -> State:
         """The state under the stress sigma (4,); a law of F starts undeformed whatever it is."""
         if isinstance(self.law, RateLaw):
@@ -51,7 +59,7 @@ class Element:
         strains = state.strain + increments
         if isinstance(self.law, RateLaw):
             sigma, history = np.tile(state.sigma, count), np.tile(state.history, count)
-            self.law.respond(self.law.constants(), sigma, np.ascontiguousarray(increments).ravel(), history)
+            self.law.respond(self.constants, sigma, np.ascontiguousarray(increments).ravel(), history)
             rows, memories = sigma.reshape(count, 4), history.reshape(count, -1)
         else:
             p = Particles(np.zeros((count, 2)), np.ones(count), np.ones(count), np.zeros((count, 0)))
@@ -77,15 +85,13 @@ class Element:
                 raise ElementFailed("a stress that is not finite")
             if best < TOLERANCE:
                 return ends[0]
-            try:
-                newton = np.linalg.solve((residuals[1:] - residuals[0]).T / nudge, -residuals[0])
-            except np.linalg.LinAlgError:
-                raise ElementFailed("no strain leads there: the tangent is singular") from None
+            # Least squares: perfect plasticity may leave a tangent without an inverse on the way.
+            newton = np.linalg.lstsq((residuals[1:] - residuals[0]).T / nudge, -residuals[0], rcond=1e-13)[0]
             better = self._shorten(state, control, x, newton, scale, best)
             if better is None:
                 break
             x = better
-        if best < 1e-9:
+        if best < ENOUGH:
             return self.step(state, x[None])[0]
         raise ElementFailed(f"no strain leads there: {best:.1e} of the stress is left")
 
@@ -106,8 +112,3 @@ def stretch(strain: Floats) -> Floats:
     values, axes = np.linalg.eigh(np.array([[strain[0], strain[2]], [strain[2], strain[1]]]))
     stretched: Floats = (axes * np.exp(values)) @ axes.T
     return stretched
-
-
-def unstrained(state: State) -> State:
-    """The same state, its strain counted from here."""
-    return replace(state, strain=np.zeros(3))

@@ -5,12 +5,8 @@ was. Compression is along y. A strain path of one's own
 comes from a CSV file (element_csv.py).
 """
 
-import csv
 from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import dataclass, field
-from math import isfinite
-from pathlib import Path as File
 from typing import Literal
 
 import numpy as np

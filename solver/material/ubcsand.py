@@ -35,6 +35,7 @@ from solver.state import Floats
 
 PASSES = 3
 CLOSE = 0.8  # cosine between the axes of the middle and of the end; beyond it the return is radial
+NOISE = 1e-9  # of s: a shear stress below it is none, and cannot change its sign
 SETTLED = 1e-12  # of s: an elastic step need not be passed again
 MEMORY = ("eta_m", "gamma_p", "eps_v_p", "work_p", "reversals", "detached")
 
@@ -77,7 +78,7 @@ def respond(constants, sigma, de, history):
             memory = eta_m
             stiffer = 1.0
             share = 0.0
-            crossed = reversal > 0.0 and xy * nxy < 0.0
+            crossed = reversal > 0.0 and xy * nxy < 0.0 and abs(xy) > NOISE * (start + shift)
             if crossed:  # eta where the shear stress vanishes, on the way from the old stress to the trial
                 share = xy / (xy - nxy)
                 memory = abs(half0 * (1.0 - share) + half * share)
