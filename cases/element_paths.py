@@ -6,6 +6,7 @@ comes from a CSV file (element_csv.py).
 """
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -124,8 +125,7 @@ def follow(element: Element, test: ElementTest, steps: int, start: Floats) -> Fo
         last = states[-1]
         try:
             if free:
-                guess = before if before @ move > 0 else move
-                end = element.solve(last, control(test, last, move), guess, scales(test, move, size))
+                end = solved(element, test, last, move, before, size)
                 before = end.strain - last.strain
             else:
                 end = finite(element.step(last, move[None])[0])
@@ -135,6 +135,15 @@ def follow(element: Element, test: ElementTest, steps: int, start: Floats) -> Fo
             break
     strain, sigma, history = (np.array([getattr(s, name) for s in states]) for name in ("strain", "sigma", "history"))
     return Followed(strain, sigma, history, failed)
+
+
+def solved(element: Element, test: ElementTest, last: State, move: Floats, before: Floats, size: float) -> State:
+    """The next state: from the last increment, or from what is given alone. Raises ElementFailed."""
+    residuals, sizes = control(test, last, move), scales(test, move, size)
+    if before @ move > 0:
+        with suppress(ElementFailed):
+            return element.solve(last, residuals, before, sizes)
+    return element.solve(last, residuals, move, sizes)
 
 
 def scale_of(element: Element, state: State) -> float:

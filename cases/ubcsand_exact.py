@@ -76,6 +76,13 @@ def ratio_at(law: Ubcsand, s: float, gamma: float) -> float:
     return law.eta_f if left(law.eta_f) <= 0 else float(brentq(left, 0.0, law.eta_f, xtol=1e-15))
 
 
+def volume_at(law: Ubcsand, s: float, gamma: float) -> float:
+    """eps_v_p at a total shear strain, constant s; beyond failure it dilates at a constant rate."""
+    eta = ratio_at(law, s, gamma)
+    beyond = gamma - elastic_shear(law, s, eta) - plastic_shear(law, s, eta)
+    return plastic_volume(law, s, eta) + (law.eta_cv - law.eta_f) * max(0.0, beyond)
+
+
 def biaxial(law: Ubcsand, s3: float, eta: float) -> tuple[float, float]:
     """gamma and eps_v of drained biaxial compression at constant s3 up to eta <= eta_f, by quadrature."""
 
