@@ -63,7 +63,7 @@ class Element:
             rows, memories = sigma.reshape(count, 4), history.reshape(count, -1)
         else:
             p = Particles(np.zeros((count, 2)), np.ones(count), np.ones(count), np.zeros((count, 0)))
-            p.F = np.array([stretch(strain) for strain in strains])
+            p.F = np.ascontiguousarray(stretch(strains))
             self.law.update(p, 1.0)
             rows, memories = p.sigma, np.zeros((count, 0))
         return [State(*parts) for parts in zip(strains, rows, memories, strict=True)]
@@ -99,16 +99,19 @@ class Element:
         self, state: State, control: Control, x: Floats, move: Floats, scale: Floats, best: float
     ) -> Floats | None:
         """x after the longest of the halved moves that lessens the residual; None where none does."""
-        tried = x + move * 0.5 ** np.arange(12)[:, None]
-        for candidate, end in zip(tried, self.step(state, tried), strict=True):
-            left = float(np.abs(control(candidate, end) / scale).max())
-            if left < best:
-                return np.asarray(candidate)
+        for halvings in (range(1), range(1, 12)):  # the whole move is mostly right
+            tried = x + move * 0.5 ** np.array(halvings)[:, None]
+            for candidate, end in zip(tried, self.step(state, tried), strict=True):
+                if float(np.abs(control(candidate, end) / scale).max()) < best:
+                    return np.asarray(candidate)
         return None
 
 
 def stretch(strain: Floats) -> Floats:
-    """exp of the strain xx, yy, xy (2,2), from its two principal values."""
-    values, axes = np.linalg.eigh(np.array([[strain[0], strain[2]], [strain[2], strain[1]]]))
-    stretched: Floats = (axes * np.exp(values)) @ axes.T
+    """exp of strains xx, yy, xy (...,3) as (...,2,2): e^m (cosh r I + sinh r / r dev), m and r centre and radius."""
+    m, half, xy = (strain[..., 0] + strain[..., 1]) / 2, (strain[..., 0] - strain[..., 1]) / 2, strain[..., 2]
+    r = np.hypot(half, xy)
+    even, odd = np.exp(m) * np.cosh(r), np.exp(m) * np.sinc(1j * r / np.pi).real
+    rows = [[even + odd * half, odd * xy], [odd * xy, even - odd * half]]
+    stretched: Floats = np.moveaxis(np.array(rows), (0, 1), (-2, -1))
     return stretched
