@@ -22,6 +22,16 @@ from solver.state import Floats
 FORMAT = 1
 Way = Literal["relative", "absolute", "at least", "at most"]
 Curves = dict[str, dict[str, Floats]]
+BROKEN = (
+    OSError,
+    EOFError,
+    ValueError,
+    AttributeError,
+    RecursionError,
+    NotImplementedError,
+    ValidationError,
+    BadZipFile,
+)
 
 
 @dataclass(frozen=True)
@@ -107,7 +117,7 @@ def load(folder: Path) -> Examination:
         data: Any = json.loads(path.read_bytes())
         if data.get("format") != FORMAT:
             raise StoreError(f"{path} has format {data.get('format')}, this version reads {FORMAT}")
-        with np.load(folder / "curves.npz", allow_pickle=False) as stored:
+        with (folder / "curves.npz").open("rb") as file, np.load(file, allow_pickle=False) as stored:
             curves: Curves = {}
             for key in stored.files:
                 name, _, column = key.rpartition("/")
@@ -115,5 +125,5 @@ def load(folder: Path) -> Examination:
         return replace(ADAPTER.validate_python(data), curves=curves)
     except FileNotFoundError as error:
         raise StoreError(f"{folder} holds no examination: {Path(error.filename).name} is missing") from error
-    except (OSError, ValueError, AttributeError, RecursionError, ValidationError, BadZipFile) as error:
+    except BROKEN as error:
         raise StoreError(f"{path} or its curves are broken and were left as they are; run it again") from error

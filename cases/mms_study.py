@@ -11,6 +11,7 @@ from typing import Any
 
 from cases.expectations import JUDGED, expected
 from cases.study import NORMS, QUANTITIES, Declared, Run, Study
+from mms.energy import check_energy
 from solver.layout import CENTRED, Offset
 from solver.orders import check_stress
 from solver.plugins import (
@@ -87,6 +88,7 @@ class Sweep:
         layout = create(LAYOUTS, self.layout)
         solution = create(SOLUTIONS, self.solution)
         law = create(MATERIALS, self.material or solution.material)
+        check_energy(law)
         layout.check(solution)
         if is_file(self.solution):
             from mms.check import check  # derives the fields: some tenths of a second

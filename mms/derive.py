@@ -9,18 +9,13 @@ The energy is differentiated once, by the components of F as symbols; nothing is
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
-from typing import Any, Protocol
+from typing import Protocol
 
 import sympy as sp
 
+from mms.energy import Energy, check_energy
+
 Expressions = list[sp.Expr]
-
-
-class Energy(Protocol):
-    """What a law must offer to be manufactured for."""
-
-    def energy(self, F: Any, log: Any) -> Any:
-        """Stored energy per initial volume of a 3 x 3 deformation gradient."""
 
 
 class Solution(Protocol):
@@ -54,7 +49,11 @@ class Fields:
 
 
 def derive(solution: Solution, material: Energy, rho0: float) -> Fields:
-    """All fields of `solution` in a body of `material` with initial density `rho0`."""
+    """All fields of `solution` in a body of `material` with initial density `rho0`.
+
+    Raises ValueError for a material without an energy.
+    """
+    check_energy(material)
     X, t = sp.symbols("X Y", real=True), sp.Symbol("t", real=True)
     u = [sp.sympify(component) for component in solution.displacement(X, t)]
     f = sp.symbols("Fxx Fxy Fyx Fyy", real=True)

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from mms.derive import Energy, Expressions, Fields, Solution, derive
+from mms.derive import Expressions, Fields, Solution, derive
+from mms.energy import Energy
 from mms.exact import ExactKernel, compile_exact
 from solver.state import Floats
 

@@ -10,9 +10,8 @@ from cases.checks import Check, Examination
 from cases.store import Store, StoreError
 from reports.page import Add, Image, adder, template
 from reports.show import Table
-from reports.words import sci
 
-WAYS = {"relative": "within {} of it", "absolute": "within {}", "at least": "at least this", "at most": "at most this"}
+WAYS = {"relative": "± {} of it", "absolute": "± {}", "at least": "or more", "at most": "or less"}
 
 
 @dataclass(frozen=True)
@@ -40,8 +39,12 @@ def render(folder: Path, examination: Examination, sections: Sections) -> Path:
             examination=examination,
             missed=checks_table("Checks that did not pass", missed, group=True) if missed else None,
             sections=sections(examination, adder(folder / "figures")),
-            parameters=Table("Parameters", ("parameter", "value"), tuple(examination.parameters.items())),
-            environment=Table("What computed it", ("", "version"), tuple(examination.environment.items())),
+            parameters=Table(
+                "Parameters", ("parameter", "value"), tuple(examination.parameters.items()), texts=("value",)
+            ),
+            environment=Table(
+                "What computed it", ("", "version"), tuple(examination.environment.items()), texts=("version",)
+            ),
         )
         Store.write(folder / "report.html", text.encode())
         return folder / "report.html"
@@ -59,8 +62,8 @@ def checks_table(caption: str, checks: Sequence[Check], group: bool = False) -> 
 def row(check: Check) -> tuple[str, ...]:
     """A check as text; a bound has no distance from it worth showing."""
     bound = check.way.startswith("at")
-    allowed = WAYS[check.way].format(sci(check.within))
-    miss = "" if bound else sci(check.miss)
+    allowed = WAYS[check.way].format(f"{check.within:.3g}")
+    miss = "" if bound else f"{check.miss:.2g}"
     return (check.name, str(check.outcome), digits(check.found), digits(check.expected), allowed, miss, check.source)
 
 

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from cases.checks import Curves, Examination
+from cases.objectivity_block import PRINTED, REST, SMALL
 from reports.examined import Section, checks_table, render
 from reports.figures import objectivity as draw
 from reports.page import Add
@@ -24,9 +25,10 @@ def page(folder: Path, examination: Examination) -> Path:
 
 
 def sections(examination: Examination, add: Add) -> Sequence[Section]:
-    """Its parts."""
-    return [figure2(examination, add), inertia(examination, add), misread(examination, add), orders(examination, add),
-            rates(examination, add)]  # fmt: skip
+    """Its parts; those of the CPDI runs only where all three have something to draw."""
+    whole = all(f"run/{name}" in examination.curves for name in (PRINTED, SMALL, REST))
+    runs = [figure2(examination, add), inertia(examination, add)] if whole else []
+    return [*runs, misread(examination, add), orders(examination, add), rates(examination, add)]
 
 
 def of(curves: Curves, start: str) -> Curves:
@@ -46,10 +48,10 @@ def figure2(examination: Examination, add: Add) -> Section:
         (add(f"figure2_{key}", draw.stresses(exact, {name: runs[name]}, curves["wave"] if key == "printed" else None),
              f"Mean stress of the {name} over time: lines of the closed form, marks of the CPDI run."),
          f"{name}: lines are the closed form, marks the mean over all particles of the CPDI run.")
-        for key, name in (("printed", "block of 1 m"), ("small", "block of 1 cm"))
+        for key, name in (("printed", PRINTED), ("small", SMALL))
     ]  # fmt: skip
     return Section(
-        "figure2", "Figure 2: a block is loaded by gravity and turned by 90°", examination.notes[RUN], images,
+        "figure2", "Figure 2: a block is loaded by gravity and turned by 90°", examination.notes.get(RUN, ()), images,
         [_checks(examination, RUN), _checks(examination, KINEMATIC)],
     )  # fmt: skip
 
@@ -57,10 +59,10 @@ def figure2(examination: Examination, add: Add) -> Section:
 def inertia(examination: Examination, add: Add) -> Section:
     """What is inertia and what is not."""
     runs = of(examination.curves, "run")
-    shear = draw.co_rotated({name: runs[name] for name in ("block of 1 m", "block of 1 cm")})
-    away = draw.inertia({name: runs[name] for name in ("block of 1 m", "block of 1 m, not turned", "block of 1 cm")})
+    shear = draw.co_rotated({name: runs[name] for name in (PRINTED, SMALL)})
+    away = draw.inertia({name: runs[name] for name in (PRINTED, REST, SMALL)})
     return Section(
-        "inertia", "What the turning box feels: co-rotated stresses and inertia", examination.notes["Inertial share"],
+        "inertia", "What the turning box feels: co-rotated stresses and inertia", examination.notes.get("Inertial share", ()),
         [(add("co_rotated", shear, "Co-rotated shear stress over time, two block sizes."),
           "Shear stress in the frame of the box: the mean over the block, and the largest of any particle."),
          (add("inertia", away, "Co-rotated vertical stress less its static value over time, three runs."),
@@ -79,7 +81,7 @@ def misread(examination: Examination, add: Add) -> Section:
     )
     head = ("reading", "Figure 2, kinematic", "Figure 2, the CPDI run", "stretched turn, 400 steps")
     return Section(
-        "misread", "Negative controls: readings that are wrong", examination.notes["Negative controls"],
+        "misread", "Negative controls: readings that are wrong", examination.notes.get("Negative controls", ()),
         [(add("misread", drawn, "Shear stress of the turned block by each wrong reading."),
           "Shear stress along the motion of Figure 2 by each wrong reading, kinematic, 200 steps; the broad line is "
           "right, and crosses are the readings that this figure cannot tell from it.")],
@@ -95,7 +97,7 @@ def orders(examination: Examination, add: Add) -> Section:
     steps = next(iter(errors.values()))["steps"]
     rows = tuple((name.replace("_", " "), *map(sci, map(float, curve["error"]))) for name, curve in errors.items())
     return Section(
-        "orders", "Orders in time: a turn with strain", examination.notes[ORDERS],
+        "orders", "Orders in time: a turn with strain", examination.notes.get(ORDERS, ()),
         [(add("orders", draw.orders(errors, right), "Error against the number of steps."),
           "Full lines: rates. Broken lines: misreadings; those that do not fall never converge.")],
         [Table("Relative error at the end", ("reading", *(f"{n:g} steps" for n in steps)), rows),
@@ -111,5 +113,5 @@ def rates(examination: Examination, add: Add) -> Section:
         for key, text in (("s12", "Shear stress: lines are closed forms, marks what was computed."),
                           ("s11", "Normal stress along the shear; σ₂₂ = −σ₁₁, and 0 for Truesdell."))
     ]  # fmt: skip
-    return Section("rates", "Objective is not unique: four rates in simple shear to γ = 8", examination.notes[SHEAR],
+    return Section("rates", "Objective is not unique: four rates in simple shear to γ = 8", examination.notes.get(SHEAR, ()),
                    images, [_checks(examination, SHEAR)])  # fmt: skip

@@ -7,7 +7,7 @@ from solver._jit import kernel
 
 @kernel(inline=True)
 def step_gradient(b, F0, F1):
-    """L dt of particle b in the middle of the step: xx, xy, yx, yy."""
+    """L dt of particle b in the middle of the step: xx, xy, yx, yy; not a number where the mean has lost its det F."""
     axx = 0.5 * (F0[4 * b] + F1[4 * b])
     axy = 0.5 * (F0[4 * b + 1] + F1[4 * b + 1])
     ayx = 0.5 * (F0[4 * b + 2] + F1[4 * b + 2])
@@ -16,7 +16,8 @@ def step_gradient(b, F0, F1):
     dxy = F1[4 * b + 1] - F0[4 * b + 1]
     dyx = F1[4 * b + 2] - F0[4 * b + 2]
     dyy = F1[4 * b + 3] - F0[4 * b + 3]
-    per = 1.0 / (axx * ayy - axy * ayx)
+    det = axx * ayy - axy * ayx
+    per = 1.0 / det if det > 0.0 else np.nan
     return (
         (dxx * ayy - dxy * ayx) * per,
         (dxy * axx - dxx * axy) * per,

@@ -1,15 +1,24 @@
-"""The page in a real browser: missing images, console errors, horizontal scrolling; and that these checks can fail."""
+"""The pages in a real browser: missing images, console errors, horizontal scrolling; and that these checks can fail."""
 
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import fixtures_study as fixtures
+import numpy as np
 import pytest
 from selenium import webdriver
 from selenium.webdriver.chrome.service import Service
 
+from cases import objectivity_block, objectivity_kinematic
+from cases.objectivity import examine
+from cases.objectivity_exact import rotated
+from cases.objectivity_kinematic import STEPS
+from cases.runner import InProcess
+from cases.turning_block import Block
+from reports import objectivity_page
 from reports.render import render
 
 CHROMIUM, DRIVER = Path("/usr/bin/chromium"), Path("/usr/bin/chromedriver")
@@ -95,6 +104,53 @@ def test_unfinished_study(browser: webdriver.Chrome, unfinished: Path, width: in
 def test_figures_take_the_width_of_a_phone(browser: webdriver.Chrome, page: Path) -> None:
     look(browser, page, 360)
     assert browser.execute_script(SMALLEST) > 0.8
+
+
+# ---- examinations: a function that makes the page, and how many images it has
+
+
+def closed_form(block: Block) -> tuple[dict[str, Any], str]:
+    """In place of a run of the block: its closed form with a ripple."""
+    t = np.linspace(0.02, 2, 100)
+    angle = np.pi / 2 * np.maximum(0, t - 1)
+    ripple = 1 + 0.02 * block.L * np.sin(20 * t)
+    xx, yy, xy = rotated(-3 / 7 * np.minimum(t, 1), -np.minimum(t, 1), angle).T * ripple
+    own = {"own_xx": -3 / 7 * ripple, "own_yy": -ripple, "own_xy": 1e-3 * ripple, "shear": 0.1 * ripple}
+    X, Y = np.meshgrid(np.linspace(0.1, 0.9, 5), np.linspace(0.1, 0.9, 5))
+    mean = {"t": t, "angle": angle, "xx": xx, "yy": yy, "zz": xx, "xy": xy, **own}
+    field = {"X": X.ravel(), "Y": Y.ravel(), **{name: np.ones(25) for name in ("own_xx", "own_yy", "own_xy")}}
+    return {"mean": mean, "field": field}, ""
+
+
+def objectivity(folder: Path) -> Path:
+    """The page of `verify objectivity`, with a check that failed and one without a number."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(objectivity_block, "execute", closed_form)
+        patch.setattr(objectivity_kinematic, "order_errors", lambda rate, counts=STEPS: 1 / np.array(counts) ** 2.0)
+        patch.setattr(objectivity_kinematic, "simple_shear", lambda rate, gamma, steps: np.ones(2) * gamma / steps)
+        found = examine(Block(), InProcess(), "verify objectivity --cells 8 --out " + "/a/long/path" * 9)
+    checks = list(found.checks)
+    checks[:2] = [replace(checks[0], found=np.nan), replace(checks[1], name="a stress_" + "with_a_long_name_" * 5)]
+    return objectivity_page.page(folder, replace(found, checks=tuple(checks)))
+
+
+EXAMINED: dict[str, tuple[Callable[[Path], Path], int]] = {"objectivity": (objectivity, 8)}
+
+
+@pytest.fixture(scope="module", params=EXAMINED)
+def examined(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, int]:
+    """The page of an examination, and how many images it has."""
+    make, images = EXAMINED[request.param]
+    return make(tmp_path_factory.mktemp(request.param)), images
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+def test_examinations(browser: webdriver.Chrome, examined: tuple[Path, int], width: int) -> None:
+    page, images = examined
+    assert look(browser, page, width) == {}
+    assert browser.execute_script("return document.images.length") == images
+    assert "What missed" in browser.page_source
+    assert width > 700 or browser.execute_script(SMALLEST) > 0.8
 
 
 @pytest.mark.parametrize(

@@ -267,7 +267,7 @@ def test_list_names_every_plugin(verify: Verify) -> None:
     said = verify("list")
     assert (said.code, said.err) == (0, "")
     listed = {line.split()[0] for line in said.out.splitlines() if line.startswith("  ")}
-    others = ("cases.library", "solver.transfers", "mms.layouts")
+    others = ("cases.library", "solver.transfers", "mms.layouts", "solver.rates", "solver.misreadings")
     assert listed == {*METHODS, *SOLUTIONS, *MATERIALS, *(name for package in others for name in available(package))}
     assert all(len(line.split()) > 2 for line in said.out.splitlines() if line.startswith("  "))  # and says what it is
 

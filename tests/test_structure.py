@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from solver.plugins import available, camel, load
@@ -15,7 +16,9 @@ from solver.sources import TOP
 FLOORS = ("solver", "mms", "cases", "reports", "verify")  # from the ground up
 PLUGINS = {
     "solver.basis": {"support", "order", "fill"},
-    "solver.material": {"energy", "update", "wave_speed"},
+    "solver.material": {"start", "update", "wave_speed"},
+    "solver.rates": {"unrotate", "rotate", "order"},
+    "solver.misreadings": {"unrotate", "rotate", "order"},
     "solver.transfers": {"share", "start", "give", "filter", "take"},
     "mms.solutions": {"displacement", "boundary", "lower", "upper", "duration"},
 }
@@ -96,6 +99,39 @@ def test_a_basis_has_the_one_signature(name: str) -> None:
     assert 0 < basis.order < 10
 
 
+def one_signature(kernel: Any, signature: Any) -> None:
+    assert kernel.signatures == [signature.args]
+    assert kernel.nopython_signatures[0].return_type == signature.return_type
+
+
+FRAMES = [(package, name) for package in ("solver.rates", "solver.misreadings") for name in available(package)]
+
+
+@pytest.mark.parametrize(("package", "name"), FRAMES)
+def test_a_rate_has_the_two_signatures(package: str, name: str) -> None:
+    from solver.objective import ROTATE, UNROTATE, Rate
+
+    rate: Any = load(package, name)
+    assert issubclass(rate, Rate)
+    one_signature(rate.unrotate, UNROTATE)
+    one_signature(rate.rotate, ROTATE)
+    assert rate.order == 2.0 if package == "solver.rates" else rate.order in (0.0, 1.0)
+
+
+@pytest.mark.parametrize("name", available("solver.material"))
+def test_a_law_is_of_one_of_two_forms(name: str) -> None:
+    """A function of F with its energy, or in rate form with one kernel of the one signature."""
+    from solver.objective import RESPOND
+    from solver.rate_law import RateLaw
+
+    law: Any = load("solver.material", name)
+    assert issubclass(law, RateLaw) != hasattr(law, "energy")
+    if issubclass(law, RateLaw):
+        one_signature(law.respond, RESPOND)
+        assert law().initial(np.zeros((3, 4))).shape == (3, len(law.memory))
+        assert law().rate in available("solver.rates")  # no misreading by default
+
+
 @pytest.mark.parametrize("name", available("cases.library"))
 def test_a_case_can_be_executed(name: str) -> None:
     from importlib import import_module
@@ -106,6 +142,7 @@ def test_a_case_can_be_executed(name: str) -> None:
 def test_names_of_plugins() -> None:
     assert camel("neo_hookean") == "NeoHookean"
     assert {"mpm", "cpdi"} <= set(available("solver.basis"))
+    assert not set(available("solver.rates")) & set(available("solver.misreadings")), "RateLaw looks for both"
     assert not [name for package in PLUGINS for name in available(package) if name.startswith("_")]
     with pytest.raises(ValueError, match=r"no method 'fem'; choose from .*cpdi, .*mpm"):
         load("solver.basis", "fem")

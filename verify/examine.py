@@ -3,7 +3,7 @@
 import json
 from collections.abc import Callable
 from dataclasses import asdict
-from math import isfinite
+from math import isfinite, nan
 from pathlib import Path
 from typing import Any
 
@@ -102,9 +102,20 @@ def sentence(check: Check) -> str:
 
 
 def closest(checks: list[Check]) -> str:
-    """The check that uses most of what it is allowed."""
-    bands = [check for check in checks if check.within]
-    if not bands:
+    """The check that uses most of what it is allowed, and its numbers; nothing where no check allows anything."""
+    shares = {check: used(check) for check in checks}
+    bounded = [check for check in checks if isfinite(shares[check])]
+    if not bounded:
         return ""
-    most = max(bands, key=lambda check: check.miss / check.within)
-    return f"{most.name}: off by {most.miss:.2g} of {most.within:.2g} allowed"
+    most = max(bounded, key=lambda check: shares[check])
+    if most.way.startswith("at"):
+        return f"{most.found:.2g}, {most.way} {most.expected:.2g}: {most.name}"
+    return f"{most.miss:.2g} of {most.within:.2g}: {most.name}"
+
+
+def used(check: Check) -> float:
+    """Share of what the check is allowed that it uses, above 1 where it fails; NaN where there is no such number."""
+    if check.within:
+        return check.miss / check.within
+    over, under = (check.found, check.expected) if check.way == "at most" else (check.expected, check.found)
+    return over / under if check.way.startswith("at") and min(over, under) > 0 else nan

@@ -4,15 +4,30 @@ import ast
 
 import typer
 
-from solver.plugins import CASES, KINDS, LAYOUTS, MATERIALS, METHODS, SOLUTIONS, TRANSFERS, available, folder
+from solver.plugins import (
+    CASES,
+    KINDS,
+    LAYOUTS,
+    MATERIALS,
+    METHODS,
+    MISREADINGS,
+    RATES,
+    SOLUTIONS,
+    TRANSFERS,
+    available,
+    folder,
+)
 from verify.output import printing
+
+PACKAGES = (CASES, METHODS, TRANSFERS, LAYOUTS, SOLUTIONS, MATERIALS, RATES, MISREADINGS)
+REMARKS = {RATES: " (of the laws in rate form)", MISREADINGS: " (negative controls, taken as a rate)"}
 
 
 def list_plugins() -> None:
-    """List cases, methods, transfers, layouts, solutions and materials with a line about each."""
+    """List cases, methods, transfers, layouts, solutions, materials, rates and misreadings with a line about each."""
     with printing():
-        for package in (CASES, METHODS, TRANSFERS, LAYOUTS, SOLUTIONS, MATERIALS):
-            typer.echo(f"{KINDS[package]}s")
+        for package in PACKAGES:
+            typer.echo(f"{KINDS[package]}s{REMARKS.get(package, '')}")
             for name in available(package):
                 typer.echo(f"  {name:20}{summary(package, name)}")
 

@@ -1,5 +1,6 @@
-"""`verify report DIR`: make the report of a stored study again; runs nothing."""
+"""`verify report DIR`: make the report of a stored study or examination again; runs nothing."""
 
+from importlib import import_module
 from pathlib import Path
 from typing import Annotated
 
@@ -8,20 +9,44 @@ import typer
 from verify.choices import integers
 from verify.output import printing
 
+PAGES = {"objectivity": "reports.objectivity_page", "material": "reports.material_page"}  # of examinations
+
 
 def report(
-    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Study folder.")],
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a study or an examination.")],
     field: Annotated[str, typer.Option(help="Run of the error field: cells,particles per cell.")] = "16,4",
 ) -> None:
-    """Make the HTML report, figures and tables of a stored study again, without running anything."""
+    """Make the HTML report, figures and tables of what is stored again, without running anything."""
     from verify.conduct import usage
 
     with usage():
         chosen = integers(field, "--field")
         if len(chosen) != 2 or min(chosen) < 1:
             raise ValueError(f"--field {field!r} is no run; write cells,particles per cell, such as 64,4")
-        from reports.render import render
-
-        page = render(folder, *chosen)
+        page = examined(folder) if (folder / "examination.json").exists() else study(folder, *chosen)
     with printing():
         typer.echo(f"report: {page}")
+
+
+def study(folder: Path, cells: int, ppc: int) -> Path:
+    """The page of a study."""
+    from reports.render import render
+
+    return render(folder, cells, ppc)
+
+
+def examined(folder: Path) -> Path:
+    """The page of an examination: its name, up to a hyphen, says which. Raises ValueError, StoreError."""
+    from cases.checks import load
+    from cases.store import StoreError
+
+    examination = load(folder)
+    kind = examination.name.partition("-")[0]
+    if kind not in PAGES:
+        known = ", ".join(PAGES)
+        raise ValueError(f"{folder} holds an examination {examination.name!r}, which must be of {known}, or newer")
+    try:
+        page: Path = import_module(PAGES[kind]).page(folder, examination)
+    except KeyError as error:
+        raise StoreError(f"{folder} lacks {error}, which this version draws; run it again") from error
+    return page
