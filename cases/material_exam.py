@@ -1,11 +1,12 @@
 """`verify material`: element tests of one law as an Examination, with errors and orders in the strain step."""
 
 from dataclasses import dataclass
-from math import log2
+from math import cos, log2, radians, sin
 from typing import Any
 
 import numpy as np
 
+from cases import ubcsand_exact as ubc
 from cases.checks import Check, Curves, Examination
 from cases.element import Element
 from cases.element_paths import ElementTest, Followed, follow
@@ -14,10 +15,12 @@ from cases.material_checks import law_checks
 from cases.material_curves import columns, start
 from cases.material_exact import Columns, exact
 from solver._jit import use_threads
+from solver.material.mohr_coulomb import MohrCoulomb
 from solver.material.ubcsand import Ubcsand
 
 DOUBLED, FINE = (1, 2, 4, 8, 16), 64  # steps of the study, and of what stands for the truth where nothing is known
 ROUND_OFF = 1e-9  # relative errors below it have no order
+MARKED = 5e3  # Pa, the confining stress of the reference tables
 DRAWN = 400  # points of a curve that are kept
 
 
@@ -35,12 +38,12 @@ class Studied:
 
     @property
     def order(self) -> float:
-        """Between the two finest; NaN where the error is round-off, or a run has failed.
+        """Between the two finest that are above round-off; NaN where there are none.
 
-        Against the test's own curve the two before: one with a quarter of its steps shares too much of its error.
+        Against the test's own curve the last is left out: a quarter of that curve's steps shares too much of its error.
         """
-        few, many = self.errors[-2:] if self.truth is not None else self.errors[-3:-1]
-        return log2(few / many) if many > ROUND_OFF and few > 0 else float("nan")
+        seen = [error for error in (self.errors if self.truth else self.errors[:-1]) if error > ROUND_OFF]
+        return log2(seen[-2] / seen[-1]) if len(seen) > 1 else float("nan")
 
 
 def study(law: Any, test: ElementTest, stress: float, steps: int) -> Studied:
@@ -84,7 +87,7 @@ def checks(law: Any, studied: Studied) -> list[Check]:
     if studied.truth is not None:
         allowed = 1e-9 if not isinstance(law, Ubcsand) else 1e-3
         found.append(Check(group, "error at the end, finest", finest, allowed, "at most", studied.source))
-    if isinstance(law, Ubcsand) and not studied.test.cyclic and finest > ROUND_OFF:
+    if isinstance(law, Ubcsand) and not studied.test.cyclic:
         found.append(Check(group, "order in the strain step", studied.order, 1.9, "at least", "midpoint scheme"))
     return found
 
@@ -105,19 +108,20 @@ def examine(
         lead += " Nothing is known of this path, so nothing is judged."
     return Examination(
         f"material-{specification}", f"Element tests of {specification}", command, lead, tuple(found),
-        parameters(law, stress, steps), {one.test.title: words(one) for one in studies}, environment(), curves(studies),
+        parameters(law, stress, steps), {one.test.title: words(one) for one in studies}, environment(),
+        curves(studies) | strength(law) | marks(law, studies, stress),
     )  # fmt: skip
 
 
 def words(one: Studied) -> tuple[str, ...]:
     """What the errors are held against, and what came out."""
     end = f"It ends early: {one.failed}." if one.failed else ""
-    if one.errors[-1] <= ROUND_OFF:
+    if max(one.errors) <= ROUND_OFF:
         order = "The error is round-off at any number of steps: each step is exact here, and there is no order."
     elif np.isnan(one.order):
         order = "There is no order to see."
     else:
-        order = f"The order between the two finest is {one.order:.2f}."
+        order = f"The order is {one.order:.2f}."
     return tuple(filter(None, [end, f"Errors are against: {one.source}. {order}"]))
 
 
@@ -129,9 +133,37 @@ def curves(studies: list[Studied]) -> Curves:
         kept[f"test/{one.test.name}"] = {name: values[::every] for name, values in one.curve.items()}
         if one.truth is not None:
             kept[f"exact/{one.test.name}"] = one.truth
-        kept[f"errors/{one.test.name}"] = {"steps": np.array(one.steps, float), "error": np.array(one.errors)}
+        errors = {"steps": np.array(one.steps, float), "error": np.array(one.errors)}
+        kept[f"errors/{one.test.name}"] = errors | {"order": np.array([one.order])}
         kept[f"kind/{one.test.name}"] = {"shear": np.array([float(one.test.shear)])}
     return kept
+
+
+def strength(law: Any) -> Curves:
+    """The line t = a + b s that a soil cannot pass in the plane, where the law has one."""
+    if isinstance(law, Ubcsand):
+        return {"strength": {"a": np.array([law.shift * law.eta_f]), "b": np.array([law.eta_f])}}
+    if isinstance(law, MohrCoulomb):
+        b = sin(radians(law.phi))
+        return {"strength": {"a": np.array([law.c * cos(radians(law.phi))]), "b": np.array([b])}}
+    return {}
+
+
+def marks(law: Any, studies: list[Studied], stress: float) -> Curves:
+    """Points of the reference tables on the curves of the law that they are for."""
+    if law != Ubcsand() or stress != MARKED:
+        return {}
+    table = [
+        (slip + ubc.elastic_shear(law, s, eta), eta * s, ev)
+        for s, eta, slip, ev, _ in ubc.CONSTANT_S
+        if s == MARKED and eta
+    ]
+    found = {"constant_s": table, "biaxial": [((g), (s1 - MARKED) / 2, ev) for _, s1, g, ev, *_ in ubc.BIAXIAL]}
+    return {
+        f"marks/{name}": dict(zip(("gamma", "t", "ev"), np.array(rows).T, strict=True))
+        for name, rows in found.items()
+        if name in {one.test.name for one in studies}
+    }
 
 
 def parameters(law: Any, stress: float, steps: int) -> dict[str, str]:

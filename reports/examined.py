@@ -28,8 +28,13 @@ class Section:
 Sections = Callable[[Examination, Add], Sequence[Section]]
 
 
-def render(folder: Path, examination: Examination, sections: Sections) -> Path:
-    """Write report.html, figures/ and tables/checks.csv; `sections` draws what is special. Raises StoreError."""
+def render(
+    folder: Path, examination: Examination, sections: Sections, kinds: Sequence[str] = ("svg", "pdf", "png")
+) -> Path:
+    """Write report.html, figures/ in these kinds, tables/checks.csv; `sections` draws what is special.
+
+    Raises StoreError.
+    """
     try:
         for name in ("figures", "tables"):
             (folder / name).mkdir(parents=True, exist_ok=True)
@@ -38,7 +43,7 @@ def render(folder: Path, examination: Examination, sections: Sections) -> Path:
         text = template("examination.html.j2").render(
             examination=examination,
             missed=checks_table("Checks that did not pass", missed, group=True) if missed else None,
-            sections=sections(examination, adder(folder / "figures")),
+            sections=sections(examination, adder(folder / "figures", kinds=kinds)),
             parameters=Table(
                 "Parameters", ("parameter", "value"), tuple(examination.parameters.items()), texts=("value",)
             ),

@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from cases.checks import Curves, Examination
-from cases.objectivity_block import PRINTED, REST, SMALL
 from reports.examined import Section, checks_table, render
 from reports.figures import objectivity as draw
 from reports.page import Add
@@ -17,6 +16,8 @@ KINEMATIC, RUN, ORDERS, SHEAR = (
     "Orders in time",
     "Rates in simple shear",
 )
+
+PRINTED, SMALL, REST = "block of 1 m", "block of 1 cm", "block of 1 m, not turned"
 
 
 def page(folder: Path, examination: Examination) -> Path:
@@ -36,6 +37,10 @@ def of(curves: Curves, start: str) -> Curves:
     return {name[len(start) + 1 :]: curve for name, curve in curves.items() if name.startswith(start + "/")}
 
 
+def _notes(examination: Examination, group: str) -> Sequence[str]:
+    return examination.notes.get(group, ())
+
+
 def _checks(examination: Examination, group: str) -> Table:
     return checks_table(group, [check for check in examination.checks if check.group == group])
 
@@ -51,7 +56,7 @@ def figure2(examination: Examination, add: Add) -> Section:
         for key, name in (("printed", PRINTED), ("small", SMALL))
     ]  # fmt: skip
     return Section(
-        "figure2", "Figure 2: a block is loaded by gravity and turned by 90°", examination.notes.get(RUN, ()), images,
+        "figure2", "Figure 2: a block is loaded by gravity and turned by 90°", _notes(examination, RUN), images,
         [_checks(examination, RUN), _checks(examination, KINEMATIC)],
     )  # fmt: skip
 
@@ -62,7 +67,7 @@ def inertia(examination: Examination, add: Add) -> Section:
     shear = draw.co_rotated({name: runs[name] for name in (PRINTED, SMALL)})
     away = draw.inertia({name: runs[name] for name in (PRINTED, REST, SMALL)})
     return Section(
-        "inertia", "What the turning box feels: co-rotated stresses and inertia", examination.notes.get("Inertial share", ()),
+        "inertia", "What the turning box feels: co-rotated stresses and inertia", _notes(examination, "Inertial share"),
         [(add("co_rotated", shear, "Co-rotated shear stress over time, two block sizes."),
           "Shear stress in the frame of the box: the mean over the block, and the largest of any particle."),
          (add("inertia", away, "Co-rotated vertical stress less its static value over time, three runs."),
@@ -81,7 +86,7 @@ def misread(examination: Examination, add: Add) -> Section:
     )
     head = ("reading", "Figure 2, kinematic", "Figure 2, the CPDI run", "stretched turn, 400 steps")
     return Section(
-        "misread", "Negative controls: readings that are wrong", examination.notes.get("Negative controls", ()),
+        "misread", "Negative controls: readings that are wrong", _notes(examination, "Negative controls"),
         [(add("misread", drawn, "Shear stress of the turned block by each wrong reading."),
           "Shear stress along the motion of Figure 2 by each wrong reading, kinematic, 200 steps; the broad line is "
           "right, and crosses are the readings that this figure cannot tell from it.")],
@@ -97,7 +102,7 @@ def orders(examination: Examination, add: Add) -> Section:
     steps = next(iter(errors.values()))["steps"]
     rows = tuple((name.replace("_", " "), *map(sci, map(float, curve["error"]))) for name, curve in errors.items())
     return Section(
-        "orders", "Orders in time: a turn with strain", examination.notes.get(ORDERS, ()),
+        "orders", "Orders in time: a turn with strain", _notes(examination, ORDERS),
         [(add("orders", draw.orders(errors, right), "Error against the number of steps."),
           "Full lines: rates. Broken lines: misreadings; those that do not fall never converge.")],
         [Table("Relative error at the end", ("reading", *(f"{n:g} steps" for n in steps)), rows),
@@ -113,5 +118,5 @@ def rates(examination: Examination, add: Add) -> Section:
         for key, text in (("s12", "Shear stress: lines are closed forms, marks what was computed."),
                           ("s11", "Normal stress along the shear; σ₂₂ = −σ₁₁, and 0 for Truesdell."))
     ]  # fmt: skip
-    return Section("rates", "Objective is not unique: four rates in simple shear to γ = 8", examination.notes.get(SHEAR, ()),
+    return Section("rates", "Objective is not unique: four rates in simple shear to γ = 8", _notes(examination, SHEAR),
                    images, [_checks(examination, SHEAR)])  # fmt: skip

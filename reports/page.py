@@ -1,7 +1,7 @@
 """What every page is made of: the templates, and figures that stand inside it as SVG data."""
 
 import base64
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -32,11 +32,11 @@ def template(name: str) -> Template:
     return environment.get_template(name)
 
 
-def adder(folder: Path, end: str = "") -> Add:
+def adder(folder: Path, end: str = "", kinds: Sequence[str] = ("svg", "pdf", "png")) -> Add:
     """A function that saves a figure under a name and gives it as an Image; its halves are saved as SVG alone."""
 
     def add(name: str, figure: Figure, alt: str) -> Image:
-        svg = style.save(figure, folder, name + end, ("svg",) if name.startswith("figure1_") else ("svg", "pdf", "png"))
+        svg = style.save(figure, folder, name + end, ("svg",) if name.startswith("figure1_") else kinds)
         width, height = (round(96 * inches) for inches in figure.get_size_inches())
         return Image(name + end, "data:image/svg+xml;base64," + base64.b64encode(svg).decode(), alt, width, height)
 

@@ -12,6 +12,7 @@ from verify.audit import audit
 from verify.expectations import expectations
 from verify.graded import graded
 from verify.list import list_plugins
+from verify.material import material
 from verify.methods import methods
 from verify.mms import mms
 from verify.objectivity import objectivity
@@ -25,6 +26,7 @@ app.command("methods")(methods)
 app.command("graded")(graded)
 app.command("audit")(audit)
 app.command("expectations")(expectations)
+app.command("material")(material)
 app.command("objectivity")(objectivity)
 app.command("list")(list_plugins)
 app.command("report")(report)
