@@ -12,14 +12,16 @@ import pytest
 from selenium import webdriver
 from selenium.webdriver.chrome.service import Service
 
-from cases import objectivity_block, objectivity_kinematic
+from cases import material_exam, objectivity_block, objectivity_kinematic
+from cases.element_paths import TESTS
 from cases.objectivity import examine
 from cases.objectivity_exact import rotated
 from cases.objectivity_kinematic import STEPS
 from cases.runner import InProcess
 from cases.turning_block import Block
-from reports import objectivity_page
+from reports import material_page, objectivity_page
 from reports.render import render
+from solver.plugins import create
 
 CHROMIUM, DRIVER = Path("/usr/bin/chromium"), Path("/usr/bin/chromedriver")
 WIDTHS = (1280, 360)
@@ -134,7 +136,16 @@ def objectivity(folder: Path) -> Path:
     return objectivity_page.page(folder, replace(found, checks=tuple(checks)))
 
 
-EXAMINED: dict[str, tuple[Callable[[Path], Path], int]] = {"objectivity": (objectivity, 8)}
+def material(folder: Path) -> Path:
+    """Three element tests of UBCSAND in few steps, with a check that misses."""
+    law = create("solver.material", "ubcsand")
+    tests = [TESTS[name] for name in ("biaxial", "shear_volume", "cyclic_shear")]
+    found = material_exam.examine("ubcsand", law, tests, 5e3, 12, "verify material ubcsand")
+    missed = replace(found.checks[0], found=9.0, way="at most")
+    return material_page.page(folder, replace(found, checks=(*found.checks, missed)))
+
+
+EXAMINED: dict[str, tuple[Callable[[Path], Path], int]] = {"objectivity": (objectivity, 8), "material": (material, 9)}
 
 
 @pytest.fixture(scope="module", params=EXAMINED)
