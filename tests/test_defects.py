@@ -233,8 +233,8 @@ def test_without_a_defect(solution: str) -> None:
 at_x, at_X = (lambda p: p.x), (lambda p: p.X)
 DEFECTS = [  # plant, solution, the local order that is left, at least so many times the error
     pytest.param(no_body_force, "axis_aligned", 0.0, 500, id="no body force"),
-    pytest.param(body_force(at_x, 0), "axis_aligned", 0.0, 50, id="body force at x"),
-    pytest.param(body_force(at_X, 1), "axis_aligned", 1.0, 10, id="body force at t + dt"),
+    pytest.param(body_force(at_x, 0), "axis_aligned", 0.0, 50, id="body force at x", marks=pytest.mark.slow),
+    pytest.param(body_force(at_X, 1), "axis_aligned", 1.0, 10, id="body force at t + dt", marks=pytest.mark.slow),
     pytest.param(new_f(lambda step, F: times(F, step)), "clamped_shear", 0.0, 50, id="F (I + dt L)"),
     pytest.param(no_one_over_j, "axis_aligned", 0.0, 100, id="no 1/J"),
     pytest.param(walls_one_node_in, "axis_aligned", 1.0, 20, id="walls one node in"),
@@ -300,6 +300,7 @@ def test_no_half_step_start() -> None:
     assert seen.local_orders[-1] < 1.5
 
 
+@pytest.mark.slow
 def test_no_half_step_start_with_a_phase() -> None:
     """A quarter period of phase: the largest acceleration at the start. PASS with the half step, order one without."""
     cells = (16, 24, 32, 48, 64)
@@ -320,7 +321,7 @@ def test_no_half_step_start_with_an_eighth_of_a_period() -> None:
     assert finest(found) > 3 * finest(sound)
 
 
-@pytest.mark.parametrize("plant", [turned_side_vectors, stress_by_numpy])
+@pytest.mark.parametrize("plant", [turned_side_vectors, pytest.param(stress_by_numpy, marks=pytest.mark.slow)])
 def test_a_placebo_raises_no_alarm(plant: Plant) -> None:
     """Another way to compute the same: PASS, and the same errors to round-off."""
     found, sound = sweep(plant, "clamped_shear"), sweep(nothing, "clamped_shear")

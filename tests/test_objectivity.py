@@ -175,6 +175,7 @@ def test_simple_shear_as_the_words_say() -> None:
 # ---- stored, and drawn again
 
 
+@pytest.mark.slow
 def test_the_page_is_made_of_what_is_stored(tmp_path: Path) -> None:
     save(tmp_path, coarse())
     text = page(tmp_path, load(tmp_path)).read_text()

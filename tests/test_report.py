@@ -198,6 +198,7 @@ def test_study_with_one_method(tmp_path: Path, method: str) -> None:
     assert words.method("mpm" if method == "cpdi" else "cpdi") + ", 4 per cell" not in said
 
 
+@pytest.mark.slow
 def test_two_solutions_are_told_apart(tmp_path: Path) -> None:
     store = Store(fixtures.make(tmp_path, ("cpdi",)))
     study, other = store.study(), "clamped_shear:G=0.05"

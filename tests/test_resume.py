@@ -121,6 +121,7 @@ def test_killed_ten_times(tmp_path: Path) -> None:
     sweep.finish()
 
 
+@pytest.mark.slow
 def test_same_study_twice(tmp_path: Path) -> None:
     """Nothing is computed the second time, and report, figures and tables are the same bytes."""
     command = [*VERIFY, "--cells", "8,16", "--ppc", "4", "--method", "cpdi", "--method", "mpm", "--out", "study"]

@@ -289,7 +289,7 @@ def real(solution: str = "axis_aligned") -> dict[tuple[str, int], Found]:
 @pytest.mark.parametrize(
     ("method", "named", "not_named"),
     [
-        ("mpm", "cell crossings", "gaps and overlaps between domains"),
+        pytest.param("mpm", "cell crossings", "gaps and overlaps between domains", marks=pytest.mark.slow),
         ("gimp", "gaps and overlaps between domains", "cell crossings"),
         ("bspline2", "quadrature with so few particles", "gaps and overlaps between domains"),
         ("cpgimp", None, None),
@@ -308,6 +308,7 @@ def test_real_runs(method: str, named: str | None, not_named: str | None) -> Non
         assert not_named not in names(found.stall)
 
 
+@pytest.mark.slow
 def test_nothing_stalls_where_nothing_crosses() -> None:
     """The same methods at an amplitude at which no particle reaches a face."""
     for found in real("axis_aligned:A=1e-06").values():

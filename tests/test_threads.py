@@ -207,6 +207,7 @@ def test_more_threads_than_there_are() -> None:
     assert numba.get_num_threads() == 1
 
 
+@pytest.mark.slow
 def test_jobs_and_threads_give_the_same_results(tmp_path: Path) -> None:
     """One worker with one thread against two workers with two threads each."""
     runs = tuple(Run("cpdi", "axis_aligned", "neo_hookean", cells, 4, 0.4) for cells in (8, 12, 16))
