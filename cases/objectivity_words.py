@@ -46,7 +46,7 @@ def words(block: Block, printed: Curve, small: Curve, rest: Curve) -> dict[str, 
             press on what is below it, and nothing would swap.""",
         ),
         "Inertial share": plain(
-            f"""A turn of 90 degrees in a second is not slow for a block of {block.L:g} m: w^2 L / g is
+            f"""A turn of 90 degrees in a second is not slow for a block of {block.L:g} m: ω² L / g is
             {block.share:.2g}. On average over the turn the mean vertical stress misses its static value by
             {percent(away[0])}; the same box at rest, with the centrifugal and Coriolis forces of the turning one,
             misses it by {percent(away[1])}. So the miss is inertia, and not a rotation gone wrong. A block of a
@@ -66,17 +66,17 @@ def words(block: Block, printed: Curve, small: Curve, rest: Curve) -> dict[str, 
             the readings that leave D where it was (strain_start, strain_end, strain_fixed) give the right figure.
             They show in a turn with strain, at first order. And a frame that stretches (stretched_frame) depends on
             the strain at which the block is turned.""",
-            """The formulas as printed, F^T sigma F at both ends, do not reproduce Figure 2: the shear stress flickers
+            """The formulas as printed, FᵀσF at both ends, do not reproduce Figure 2: the shear stress flickers
             and quickly dies out, and so do the normal stresses, which the paper's figure keeps. So they are a slip of
             the pen, or the figure was made otherwise.""",
         ),
         "Orders in time": plain(
-            """F(t) = R(pi t / 2) diag(1 - t/5, 1), t from 0 to 1: the body is compressed along its own axis while it
+            """F(t) = R(π t/2) diag(1 - t/5, 1), t from 0 to 1: the body is compressed along its own axis while it
             turns. Rates are of second order. D in the frame of either end of the step, or added as it is, costs an
             order; a wrong rotation of the stress converges to a wrong stress.""",
-            """The strain increment is (F1 - F0) ((F0 + F1)/2)^-1. With F0 alone in place of the mean, which is what a
+            """The strain increment is (F1 - F0) ((F0 + F1)/2)⁻¹. With F0 alone in place of the mean, which is what a
             velocity gradient in the old configuration gives, every rate is of first order: each step by an angle a
-            adds a volume strain of -a^2.""",
+            adds a volume strain of −a².""",
         ),
         "Rates in simple shear": plain(
             """F = [[1, g], [0, 1]] with the rate of sigma = 2 G D: all four rates are objective, and they give

@@ -142,7 +142,7 @@ def test_the_words_about_shear_stresses_and_their_numbers() -> None:
     assert f"is {100 * own[-quarter:].max():.2g} % at its end" in text
     assert own[-quarter:].max() < own[:quarter].max() < 0.1
     share = " ".join(found.notes["Inertial share"])
-    assert "w^2 L / g is 0.25" in share
+    assert "ω² L / g is 0.25" in share
     assert f"{100 * (printed['own_yy'][printed['t'] > 1].mean() + 1):.2g} %" in share
 
 

@@ -1,7 +1,9 @@
 """What a command does that examines one thing: compute, store, make the page, print the checks, say it in the code."""
 
 import json
-from collections.abc import Callable
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import asdict
 from math import isfinite, nan
 from pathlib import Path
@@ -30,7 +32,8 @@ def conduct(
 
     with usage():
         check_junit(junit)
-        examination = compute()
+        with working():
+            examination = compute()
         save(folder, examination)
         page = draw(folder, examination)
         if junit:
@@ -41,6 +44,18 @@ def conduct(
         else:
             show(examination, page)
     return CODES[examination.outcome]
+
+
+@contextmanager
+def working() -> Iterator[None]:
+    """Says on a terminal that something is being done: it takes seconds to a minute."""
+    if not sys.stderr.isatty():
+        yield
+        return
+    from rich.console import Console
+
+    with Console(stderr=True).status("computing, and holding it against what is known ..."):
+        yield
 
 
 def document(examination: Examination, page: Path) -> str:
