@@ -100,17 +100,26 @@ def examine(
     studies = [study(law, test, stress, steps) for test in tests]
     found = [check for one in studies for check in checks(law, one)]
     found += law_checks(law)
-    missed = sum(check.outcome != "PASS" for check in found)
-    lead = f"{len(studies)} element tests, {len(found)} checks" + (
-        f"; {missed} did not pass." if missed else ", all pass."
-    )
-    if not found:
-        lead += " Nothing is known of this path, so nothing is judged."
     return Examination(
-        f"material-{specification}", f"Element tests of {specification}", command, lead, tuple(found),
+        f"material-{specification}", f"Element tests of {specification}", command, lead(studies, found), tuple(found),
         parameters(law, stress, steps), {one.test.title: words(one) for one in studies}, environment(),
         curves(studies) | strength(law) | marks(law, studies, stress),
     )  # fmt: skip
+
+
+def lead(studies: list[Studied], found: list[Check]) -> str:
+    """What came out, in words: how many checks, which orders, what is exact."""
+    missed = sum(check.outcome != "PASS" for check in found)
+    told = [f"{len(studies)} element tests, {len(found)} checks: {f'{missed} did not pass' if missed else 'all pass'}."]
+    flat = sum(max(one.errors) <= ROUND_OFF for one in studies)
+    orders = [one.order for one in studies if one.order == one.order]
+    if flat:
+        told.append(f"{flat} are exact in any number of steps.")
+    if orders:
+        told.append(f"Errors in the strain step fall with orders from {min(orders):.2f} to {max(orders):.2f}.")
+    if not found:
+        told = [f"{len(studies)} element tests. Nothing is known of this path, so nothing is judged.", *told[1:]]
+    return " ".join(told)
 
 
 def words(one: Studied) -> tuple[str, ...]:
