@@ -17,6 +17,7 @@ KINEMATIC, RUN, ORDERS, SHEAR = (
     "Rates in simple shear",
 )
 
+MISSES = "Largest miss of each reading, as a share of the stress; ∞ where the run could not go on"
 PRINTED, SMALL, REST = "block of 1 m", "block of 1 cm", "block of 1 m, not turned"
 
 
@@ -90,7 +91,7 @@ def misread(examination: Examination, add: Add) -> Section:
         [(add("misread", drawn, "Shear stress of the turned block by each wrong reading."),
           "Shear stress along the motion of Figure 2 by each wrong reading, kinematic, 200 steps; the broad line is "
           "right, and crosses are the readings that this figure cannot tell from it.")],
-        [Table("Largest miss of each reading, as a share of the stress; ∞ where the run could not go on", head, rows),
+        [Table(MISSES, head, rows),
          _checks(examination, "Negative controls")],
     )  # fmt: skip
 
