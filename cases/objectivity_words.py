@@ -52,8 +52,8 @@ def words(block: Block, printed: Curve, small: Curve, rest: Curve) -> dict[str, 
             misses it by {percent(away[1])}. So the miss is inertia, and not a rotation gone wrong. A block of a
             hundredth of the size, whose share is {percent(block.share / 100)}, misses by
             {percent(abs(away[2]))}, which is the grid's.""",
-            """The ripple is the block's own vibration, of period 4 L / c; the ramp starts it, only the grid damps it, and
-            its size falls with the block's. Linear waves in a column under growing gravity give it in closed form,
+            """The ripple is the block's own vibration, of period 4 L / c; the ramp starts it, only the grid damps it,
+            and its size falls with the block's. Linear waves in a column under growing gravity give it in closed form,
             the thin line in the figure of the block of 1 m.""",
             f"""Single particles see co-rotated shear stresses of up to {percent(local)}, at any size: a linear stress
             is held by particles of constant stress, and what that misses depends on how the grid lies. It falls
