@@ -37,7 +37,7 @@ class Gaps:
         p, row = model.particles, np.empty(len(model.particles), np.int64)
         row[p.id] = np.arange(len(p))
         rows = row[self.chosen]
-        corners = model.basis.corners(p.x[rows], p.F[rows], p.domain[rows])
+        corners = model.basis.corners(p.x[rows], p.F[rows], p.domain[rows], model.grid.dx)
         if corners is not None:
             self.most = max(self.most or 0.0, self.apart(corners.reshape(-1, 2)) / self.spacing)
 

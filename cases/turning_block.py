@@ -147,7 +147,7 @@ def setup(block: Block) -> Model:
     dx, dt = block.L / block.cells, 1.0 / block.steps
     margin = ceil(0.25 * block.cells) * dx
     grid = Grid(dx, np.full(2, -margin), np.full(2, block.L + margin))
-    particles = Cpdi.populate(rectangle(np.zeros(2), np.full(2, block.L), dx, block.ppc), block.rho0)
+    particles = Cpdi().populate(rectangle(np.zeros(2), np.full(2, block.L), dx, block.ppc), block.rho0)
     walls = moving(grid, Box(block.L, dx, not block.frame))
     return Model(grid, particles, Cpdi(), block.law, walls, dt)
 

@@ -1,7 +1,7 @@
 """Walls: velocity components that are given at nodes, and the grid's equation of motion."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal, get_args
 
 import numpy as np
@@ -21,12 +21,14 @@ class Walls:
 
     A node that is held has the wall's velocity before the step too. So its acceleration is the wall's own, and not what
     would bring the particles' velocity to the wall's: that reaction, handed on to the particles by FLIP, costs v half
-    an order near the wall.
+    an order near the wall. With `stops` it is handed on all the same: bodies that strike a wall are stopped by nothing
+    else, and FLIP would let them keep a velocity with which they do not move.
     """
 
     held: NDArray[np.bool_]
     value: Floats
     rate: Floats
+    stops: bool = field(default=False, kw_only=True)
 
     def move(self, grid: Grid, t: float, dt: float) -> None:
         """Set the walls for the step from t to t + dt; these stand still."""
@@ -70,8 +72,8 @@ def box(grid: Grid, kind: Kind | tuple[Kind, Kind, Kind, Kind]) -> Walls:
     return Walls(held, np.zeros(held.shape), np.zeros(held.shape))
 
 
-@kernel(nothing(F1, F2, F2, flag[:, ::1], F2, F2, f8, f8, i8), parallel=True)
-def solve(mass, given, motion, held, value, rate, dt, cutoff, ny):
+@kernel(nothing(F1, F2, F2, flag[:, ::1], F2, F2, flag, f8, f8, i8), parallel=True)
+def solve(mass, given, motion, held, value, rate, stops, dt, cutoff, ny):
     """Velocity at the end of the step and acceleration at every node; m a = f, or what the wall makes of it."""
     for column in prange(mass.shape[0] // ny):
         for i in range(column * ny, (column + 1) * ny):
@@ -82,6 +84,6 @@ def solve(mass, given, motion, held, value, rate, dt, cutoff, ny):
                 velocity = before + dt * acceleration
                 if held[i, a]:
                     velocity = value[i, a]
-                    acceleration = rate[i, a]
+                    acceleration = (velocity - before) / dt if stops else rate[i, a]
                 motion[i, a] = velocity
                 motion[i, 2 + a] = acceleration

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from math import inf, sqrt
 
-from solver.state import Particles
+from solver.state import Floats, Particles
 
 
 @dataclass(frozen=True)
@@ -39,3 +39,10 @@ class Elastic:
     def wave_speed(self) -> float:
         """Compression wave in the undeformed state, sqrt((lam + 2 mu) / rho0)."""
         return sqrt((self.lam + 2 * self.mu) / self.rho0)
+
+    def stored(self, sigma: Floats) -> Floats:
+        """Energy per volume (P,) that linear elasticity stores under the Cauchy stresses sigma (P,4)."""
+        trace = sigma[:, :3].sum(axis=1)
+        squares = (sigma[:, :3] ** 2).sum(axis=1) + 2 * sigma[:, 3] ** 2
+        energy: Floats = (squares - self.nu / (1 + self.nu) * trace**2) / (4 * self.mu)
+        return energy

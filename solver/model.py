@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import TYPE_CHECKING, Literal, Protocol, get_args
 
 import numpy as np
 
@@ -15,7 +15,12 @@ from solver.transfers._base import Transfer
 from solver.transfers.flip import Flip
 from solver.weights import Basis
 
+if TYPE_CHECKING:  # their kernels take seconds to compile, and most runs have neither
+    from solver.damping import Damping
+    from solver.smoothing._base import Smoothing
+
 Load = Callable[[Particles, float], None]
+Deformation = Literal["linear", "exponential"]
 
 
 class Material(Protocol):
@@ -47,15 +52,25 @@ class RunFailed(Exception):  # noqa: N818 - a failed run is a result, not an err
 class Scheme:
     """`transfer`: see solver/transfers; `stress`: when it is updated, solver/orders.py; `staggered`: v at half steps.
 
-    The start of a staggered run is v at t = -dt/2; without it the first order of time is lost.
+    The start of a staggered run is v at t = -dt/2; without it the first order of time is lost. `deformation`: "linear",
+    F <- (I + A) F with A = dt L (paper eq. (4)), or "exponential", F <- (I + A + A^2/2) F, exp(A) to second
+    order. A rigid turn by w dt makes the first grow det F by 1 + (w dt)^2 a step, the second by 1 + (w dt)^4/4. The
+    second keeps det F > 0 in any step unless A has the eigenvalues -1 +- i; the first loses it at det(I + A) = 0.
     """
 
     transfer: Transfer = field(default_factory=Flip)
     stress: str = "usl"
     staggered: bool = True
+    deformation: Deformation = "linear"
 
     def __post_init__(self) -> None:
         check_stress(self.stress)
+        if self.deformation not in get_args(Deformation):
+            raise ValueError(f"no deformation {self.deformation!r}; choose from {', '.join(get_args(Deformation))}")
+
+    def half(self, dt: float) -> float:
+        """Weight of A^2 F in the transfers, over dt."""
+        return 0.5 * dt if self.deformation == "exponential" else 0.0
 
 
 @dataclass
@@ -69,7 +84,10 @@ class Model:
     walls: Walls
     dt: float
     scheme: Scheme = Scheme()
+    damping: "Damping | None" = None
+    smoothing: "Smoothing | None" = None
     steps: int = 0
+    damped: float = 0.0  # energy that damping has taken so far
     slabs: Slabs = field(default_factory=Slabs)
     lost: Ints = field(init=False)
     crossed: Ints = field(init=False)
@@ -77,6 +95,8 @@ class Model:
     def __post_init__(self) -> None:
         self.lost = np.full(-(-len(self.particles) // CHUNK), -1)
         self.crossed = np.zeros(len(self.lost), np.int64)
+        if self.smoothing:
+            self.smoothing.check(self.material)
         self.material.start(self.particles)
         self.slabs.sort(self.grid, self.particles)
         self.scheme.transfer.start(self)

@@ -17,9 +17,7 @@ from numba import prange
 from solver._jit import BLOCK, F1, F2, F3, Function, function_type, kernel, nothing
 
 UNROTATE, ROTATE, RESPOND = nothing(F1, F1, F1, F1), nothing(F1, F1, F1), nothing(F1, F1, F1, F1)
-SIGNATURE = nothing(
-    function_type(UNROTATE), function_type(ROTATE), function_type(RESPOND), F1, F2, F3, F2, F2
-)  # fmt: skip
+SIGNATURE = nothing(function_type(UNROTATE), function_type(ROTATE), function_type(RESPOND), F1, F2, F3, F3, F2, F2, F1)
 
 
 class Rate:
@@ -30,22 +28,35 @@ class Rate:
     rotate: ClassVar[Function]
 
 
-@kernel(nothing(function_type(UNROTATE), function_type(ROTATE), function_type(RESPOND), F1, F1, F1, F1, F1, F1))
-def integrate_block(unrotate, rotate, respond, constants, F_old, F, sigma, history, de):
+@kernel(nothing(function_type(UNROTATE), function_type(ROTATE), function_type(RESPOND), *[F1] * 8))
+def integrate_block(unrotate, rotate, respond, constants, F_old, F_felt, F, sigma, history, work, de):
     """One step of a block, all arrays flat; F becomes F_old of the next."""
-    unrotate(F_old, F, sigma, de)
+    unrotate(F_old, F_felt, sigma, de)
+    first = sigma.copy()
+    asked = de.copy()  # a law may take from the strain increment what it gives no stress for
     respond(constants, sigma, de, history)
+    for b in range(work.shape[0]):
+        J = 0.5 * (F_old[4 * b] * F_old[4 * b + 3] - F_old[4 * b + 1] * F_old[4 * b + 2])
+        J += 0.5 * (F[4 * b] * F[4 * b + 3] - F[4 * b + 1] * F[4 * b + 2])
+        xx = (first[4 * b] + sigma[4 * b]) * asked[3 * b]
+        yy = (first[4 * b + 1] + sigma[4 * b + 1]) * asked[3 * b + 1]
+        work[b] += J * (0.5 * (xx + yy) + (first[4 * b + 3] + sigma[4 * b + 3]) * asked[3 * b + 2])
     rotate(F_old, F, sigma)
     for a in range(F.shape[0]):
         F_old[a] = F[a]
 
 
 @kernel(SIGNATURE, parallel=True)
-def integrate(unrotate, rotate, respond, constants, F_old, F, sigma, history):
-    """One step of all particles: F_old (P,4) at the start and F (P,2,2) at the end; sigma (P,4), history (P,H)."""
+def integrate(unrotate, rotate, respond, constants, F_old, F_felt, F, sigma, history, work):
+    """One step of all particles: F_old (P,4) at the start and F (P,2,2) at the end; sigma (P,4), history (P,H).
+
+    The strain is that of the way from F_old to `F_felt` (P,2,2), which is F where nothing smooths it. Adds to `work`
+    (P,) the work of the mean stress of the step per reference volume.
+    """
     count = F.shape[0]
     memory = history.shape[1]
     olds = F_old.reshape(-1)
+    felts = F_felt.reshape(-1)
     Fs = F.reshape(-1)
     sigmas = sigma.reshape(-1)
     histories = history.reshape(-1)
@@ -54,6 +65,6 @@ def integrate(unrotate, rotate, respond, constants, F_old, F, sigma, history):
         hi = min(lo + BLOCK, count)
         de = np.empty(3 * BLOCK)
         integrate_block(
-            unrotate, rotate, respond, constants, olds[4 * lo : 4 * hi], Fs[4 * lo : 4 * hi],
-            sigmas[4 * lo : 4 * hi], histories[memory * lo : memory * hi], de[: 3 * (hi - lo)],
+            unrotate, rotate, respond, constants, olds[4 * lo : 4 * hi], felts[4 * lo : 4 * hi], Fs[4 * lo : 4 * hi],
+            sigmas[4 * lo : 4 * hi], histories[memory * lo : memory * hi], work[lo:hi], de[: 3 * (hi - lo)],
         )  # fmt: skip

@@ -18,6 +18,7 @@ METHODS, MATERIALS, SOLUTIONS, CASES = "solver.basis", "solver.material", "mms.s
 LAYOUTS = "mms.layouts"
 TRANSFERS = "solver.transfers"
 RATES, MISREADINGS = "solver.rates", "solver.misreadings"
+SMOOTHINGS = "solver.smoothing"
 KINDS = {
     METHODS: "method",
     MATERIALS: "material",
@@ -27,6 +28,7 @@ KINDS = {
     LAYOUTS: "layout",
     RATES: "rate",
     MISREADINGS: "misreading",
+    SMOOTHINGS: "smoothing",
 }
 
 
@@ -116,7 +118,7 @@ def create(package: str, specification: str) -> Any:
             raise ValueError(f"{name} has no parameter {key!r}; it has {', '.join(allowed) or 'none'}")
         if key in parameters:
             raise ValueError(f"{name}: {key} is given twice")
-        parameters[key] = value if allowed[key] in (str, "str") else number(name, key, value)
+        parameters[key] = number(name, key, value) if allowed[key] in (float, "float") else value
     return plugin(**parameters)
 
 

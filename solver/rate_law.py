@@ -41,16 +41,21 @@ class RateLaw:
         if not particles.F_old.size:
             particles.F_old = particles.F.reshape(-1, 4).copy()
             particles.history = self.initial(particles.sigma)
+            particles.work = np.zeros(len(particles))
 
-    def update(self, particles: Particles, dt: float) -> None:
-        """Write particles.sigma and history, from F_old and the new F; the step's length does not matter.
+    def update(self, particles: Particles, dt: float, felt: Floats | None = None) -> None:
+        """Write particles.sigma, history and work, from F_old and the new F; the step's length does not matter.
 
+        The strain is that of the way from F_old to `felt` (P,2,2), if it is given, and the rotation that of F.
         Raises ValueError for particles that the law has not started: there is no F to go on from.
         """
         frame, p = objective(self.rate), particles
         if p.F_old.shape[1:] != (4,) or p.history.shape[1:] != (len(self.memory),):
             raise ValueError(f"{type(self).__name__} must start the particles before it updates them")
-        integrate(frame.unrotate, frame.rotate, self.respond, self.constants(), p.F_old, p.F, p.sigma, p.history)
+        felt = p.F if felt is None else felt
+        integrate(
+            frame.unrotate, frame.rotate, self.respond, self.constants(), p.F_old, felt, p.F, p.sigma, p.history, p.work
+        )  # fmt: skip
 
 
 @cache

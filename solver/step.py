@@ -4,13 +4,18 @@ When the stress is updated is the order of the step, see solver/orders.py; how v
 is a plug-in of solver/transfers. The usual step, FLIP and update-stress-last, is one pass to the grid and one back.
 """
 
+from typing import TYPE_CHECKING, cast
+
 import numpy as np
 
 from solver._jit import BLOCK
 from solver.boundary import solve
 from solver.model import Load, Material, Model, RunFailed, Scheme, check_time_step, fail
-from solver.state import Ints
+from solver.state import Floats, Ints
 from solver.transfer import g2p, p2g
+
+if TYPE_CHECKING:
+    from solver.rate_law import RateLaw
 
 __all__ = ["Load", "Material", "Model", "RunFailed", "Scheme", "advance", "check_time_step"]
 
@@ -26,8 +31,9 @@ def stress_last(model: Model) -> None:
     """v, x and F in one pass over the particles."""
     particles_to_grid(model)
     equation_of_motion(model)
+    x = model.particles.x.copy() if model.smoothing else model.particles.x
     grid_to_particles(model)
-    model.material.update(model.particles, model.dt)
+    update_stress(model, x)
 
 
 def stress_modified_last(model: Model) -> None:
@@ -39,12 +45,12 @@ def stress_modified_last(model: Model) -> None:
     new_velocities(model)
     momentum = spread(model, model.particles.v)
     model.scheme.transfer.give(model, momentum)
-    mapped = walled(model, momentum)
+    mapped, x = walled(model, momentum), model.particles.x.copy()
     model.scheme.transfer.filter(model, mapped)
     advect(model, model.grid.motion, mapped)
     model.basis.convect(model.particles, model.grid, model.dt)
     refuse_lost(model)
-    model.material.update(model.particles, model.dt)
+    update_stress(model, x)
 
 
 def stress_first(model: Model) -> None:
@@ -58,7 +64,7 @@ def stress_first(model: Model) -> None:
     model.scheme.transfer.filter(model, before)
     advect(model, rest, before)
     refuse_lost(model)
-    model.material.update(model.particles, model.dt)
+    update_stress(model, model.particles.x)
     particles_to_grid(model)
     equation_of_motion(model)
     new_velocities(model)
@@ -73,11 +79,13 @@ ORDERS = {"usl": stress_last, "musl": stress_modified_last, "usf": stress_first}
 def particles_to_grid(model: Model) -> None:
     """Mass, momentum and force at the nodes; particles that strayed are sorted anew, slabs too narrow are widened."""
     g, p, s = model.grid, model.particles, model.slabs
+    if model.smoothing:
+        model.smoothing.stress(model)
     for attempt in range(8):
         p2g(
             model.basis.fill, model.basis.support, model.basis.width, s.start, s.width,
-            p.x, p.v, p.F, p.sigma, p.m, p.V0, p.b, p.domain.ravel(), g.origin, 1.0 / g.dx, g.nx, g.ny,
-            g.mass, g.given, s.strayed,
+            p.x, p.v, p.F, p.felt if p.felt.size else p.sigma, p.m, p.V0, p.b, p.domain.ravel(), g.origin, 1.0 / g.dx,
+            g.nx, g.ny, g.mass, g.given, s.strayed,
         )  # fmt: skip
         if (s.strayed < 0).all():
             model.scheme.transfer.give(model, g.given)
@@ -88,11 +96,23 @@ def particles_to_grid(model: Model) -> None:
     raise RunFailed("a particle domain is as wide as the grid", model.steps)
 
 
+def update_stress(model: Model, x: Floats) -> None:
+    """The law, on the strain of the step, or on what smoothing makes of it in the cells of x, where the step began."""
+    p = model.particles
+    felt = model.smoothing.strain(model, x) if model.smoothing else None
+    if felt is None:
+        model.material.update(p, model.dt)
+    else:
+        cast("RateLaw", model.material).update(p, model.dt, felt)
+
+
 def equation_of_motion(model: Model) -> None:
     """Velocities and accelerations at the nodes, and what the transfer makes of them."""
     g, w = model.grid, model.walls
     w.move(g, model.time, model.dt)
-    solve(g.mass, g.given, g.motion, w.held, w.value, w.rate, model.dt, model.cutoff, g.ny)
+    if model.damping:
+        model.damped += model.damping.apply(g, w, model.dt, model.cutoff)
+    solve(g.mass, g.given, g.motion, w.held, w.value, w.rate, w.stops, model.dt, model.cutoff, g.ny)
     model.scheme.transfer.filter(model, g.motion)
     model.scheme.transfer.take(model)
 
@@ -102,7 +122,8 @@ def grid_to_particles(model: Model) -> None:
     g, p = model.grid, model.particles
     g2p(
         model.basis.fill, model.basis.support, model.basis.width, p.x, p.v, p.F, p.domain.ravel(), g.origin, 1.0 / g.dx,
-        g.nx, g.ny, g.motion, model.dt, model.scheme.transfer.share, model.lost, model.crossed,
+        g.nx, g.ny, g.motion, model.dt, model.scheme.half(model.dt), model.scheme.transfer.share, model.lost,
+        model.crossed,
     )  # fmt: skip
     model.basis.convect(p, g, model.dt)
     refuse_lost(model)

@@ -93,7 +93,24 @@ def p2g(fill, K, W, start, width, x, v, F, sigma, m, V0, b, domain, origin, inv_
 
 
 @kernel(inline=True)
-def gather(K, lo, hi, x, v, F, motion, dt, flip, table, node):
+def deform(p, F, Lxx, Lxy, Lyx, Lyy, dt, half):
+    """F of particle p at the end of the step: F + dt L (F + half L F), see Scheme.deformation."""
+    Fxx = F[p, 0, 0]
+    Fxy = F[p, 0, 1]
+    Fyx = F[p, 1, 0]
+    Fyy = F[p, 1, 1]
+    Gxx = Lxx * Fxx + Lxy * Fyx
+    Gxy = Lxx * Fxy + Lxy * Fyy
+    Gyx = Lyx * Fxx + Lyy * Fyx
+    Gyy = Lyx * Fxy + Lyy * Fyy
+    F[p, 0, 0] = Fxx + dt * (Gxx + half * (Lxx * Gxx + Lxy * Gyx))
+    F[p, 0, 1] = Fxy + dt * (Gxy + half * (Lxx * Gxy + Lxy * Gyy))
+    F[p, 1, 0] = Fyx + dt * (Gyx + half * (Lyx * Gxx + Lyy * Gyx))
+    F[p, 1, 1] = Fyy + dt * (Gyy + half * (Lyx * Gxy + Lyy * Gyy))
+
+
+@kernel(inline=True)
+def gather(K, lo, hi, x, v, F, motion, dt, half, flip, table, node):
     """New velocity, place and F of particles lo ... hi-1."""
     dNx = np.uint64(K * BLOCK)
     dNy = np.uint64(2 * K * BLOCK)
@@ -121,14 +138,7 @@ def gather(K, lo, hi, x, v, F, motion, dt, flip, table, node):
         x[p, 1] += dt * vy
         v[p, 0] = flip * (v[p, 0] + dt * ax) + (1.0 - flip) * vx
         v[p, 1] = flip * (v[p, 1] + dt * ay) + (1.0 - flip) * vy
-        Fxx = F[p, 0, 0]
-        Fxy = F[p, 0, 1]
-        Fyx = F[p, 1, 0]
-        Fyy = F[p, 1, 1]
-        F[p, 0, 0] = Fxx + dt * (Lxx * Fxx + Lxy * Fyx)
-        F[p, 0, 1] = Fxy + dt * (Lxx * Fxy + Lxy * Fyy)
-        F[p, 1, 0] = Fyx + dt * (Lyx * Fxx + Lyy * Fyx)
-        F[p, 1, 1] = Fyy + dt * (Lyx * Fxy + Lyy * Fyy)
+        deform(p, F, Lxx, Lxy, Lyx, Lyy, dt, half)
 
 
 @kernel(flag(F1))
@@ -149,8 +159,8 @@ def cells_of(x, ox, oy, inv_dx, cells):
         cells[BLOCK + b] = np.floor((x[2 * b + 1] - oy) * inv_dx)
 
 
-@kernel(i8(Fill, i8, i8, i8, i8, F2, F2, F3, F1, F1, f8, i8, i8, F2, f8, f8, I1))
-def g2p_chunk(fill, K, W, start, end, x, v, F, domain, origin, inv_dx, nx, ny, motion, dt, flip, crossed):
+@kernel(i8(Fill, i8, i8, i8, i8, F2, F2, F3, F1, F1, f8, i8, i8, F2, f8, f8, f8, I1))
+def g2p_chunk(fill, K, W, start, end, x, v, F, domain, origin, inv_dx, nx, ny, motion, dt, half, flip, crossed):
     """The particles start ... end-1; -1, or the first particle of the first block in which one has lost its det F.
 
     Adds to crossed (1,) the faces of cells that they passed.
@@ -169,7 +179,7 @@ def g2p_chunk(fill, K, W, start, end, x, v, F, domain, origin, inv_dx, nx, ny, m
             origin[0], origin[1], inv_dx, nx, ny, 0.0, nx - 1.0, 0.0, ny - 1.0, table, node,
         )  # fmt: skip
         cells_of(xs[2 * lo : 2 * hi], origin[0], origin[1], inv_dx, before)
-        gather(K, lo, hi, x, v, F, motion, dt, flip, table, node)
+        gather(K, lo, hi, x, v, F, motion, dt, half, flip, table, node)
         cells_of(xs[2 * lo : 2 * hi], origin[0], origin[1], inv_dx, after)
         passed = 0
         for b in range(hi - lo):  # beyond, in the last block, are the cells of the block before
@@ -180,9 +190,9 @@ def g2p_chunk(fill, K, W, start, end, x, v, F, domain, origin, inv_dx, nx, ny, m
     return lost
 
 
-@kernel(nothing(Fill, i8, i8, F2, F2, F3, F1, F1, f8, i8, i8, F2, f8, f8, I1, I1), parallel=True)
-def g2p(fill, K, W, x, v, F, domain, origin, inv_dx, nx, ny, motion, dt, flip, lost, crossed):
-    """FLIP velocity with a share (1 - flip) of PIC, place, and F <- (I + dt L) F (paper eq. (4)) of all particles.
+@kernel(nothing(Fill, i8, i8, F2, F2, F3, F1, F1, f8, i8, i8, F2, f8, f8, f8, I1, I1), parallel=True)
+def g2p(fill, K, W, x, v, F, domain, origin, inv_dx, nx, ny, motion, dt, half, flip, lost, crossed):
+    """FLIP velocity with a share (1 - flip) of PIC, place, and F of all particles.
 
     `lost` (chunks,) is -1, or the first particle of a block in which one has lost its det F; `crossed` (chunks,) counts
     on: the faces of cells that particles passed.
@@ -191,5 +201,6 @@ def g2p(fill, K, W, x, v, F, domain, origin, inv_dx, nx, ny, motion, dt, flip, l
         start = c * CHUNK
         end = min(x.shape[0], start + CHUNK)
         lost[c] = g2p_chunk(
-            fill, K, W, start, end, x, v, F, domain, origin, inv_dx, nx, ny, motion, dt, flip, crossed[c : c + 1]
-        )
+            fill, K, W, start, end, x, v, F, domain, origin, inv_dx, nx, ny, motion, dt, half, flip,
+            crossed[c : c + 1],
+        )  # fmt: skip

@@ -18,6 +18,7 @@ by ny nodes.
 """
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
@@ -32,6 +33,7 @@ Fill = function_type(FILL)
 Place = Callable[[Floats], Floats]
 
 
+@dataclass(frozen=True)
 class Basis:
     """A basis is data plus one kernel; its file in solver/basis is its name. This one knows points alone."""
 
@@ -40,18 +42,16 @@ class Basis:
     fill: ClassVar[Callable[..., bool]]  # a kernel of signature FILL
     width: ClassVar[int] = 0  # W
 
-    @staticmethod
-    def domain(layout: Layout, place: Place) -> Floats:
+    def domain(self, layout: Layout, place: Place) -> Floats:
         """What the basis keeps of the domains, (P,W); `place` takes reference places (n,2) to those at the start."""
         return np.zeros((len(layout), 0))
 
-    @classmethod
-    def populate(cls, layout: Layout, rho0: float, place: Place = lambda X: X) -> Particles:
+    def populate(self, layout: Layout, rho0: float, place: Place = lambda X: X) -> Particles:
         """Particles at the places of the layout, and their domains where `place` takes them."""
-        return Particles(layout.X, rho0 * layout.V0, layout.V0, cls.domain(layout, place))
+        return Particles(layout.X, rho0 * layout.V0, layout.V0, self.domain(layout, place))
 
     @staticmethod
-    def corners(x: Floats, F: Floats, domain: Floats) -> Floats | None:
+    def corners(x: Floats, F: Floats, domain: Floats, dx: float) -> Floats | None:
         """Corners (P,4,2) of particles with these arrays, in the order of solver.layout.SIDES; None for points."""
         return None
 

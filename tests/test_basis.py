@@ -9,10 +9,11 @@ from scipy.interpolate import BSpline
 
 from solver._jit import BLOCK
 from solver.layout import SIDES, Layout, rectangle
-from solver.plugins import available, load
+from solver.plugins import available, create
 from solver.state import PAD, Floats, Grid
 
-BASES = available("solver.basis")
+LIMITED = "cpdi:limit=0.45"  # half diagonals are 0.35 cells before they deform
+BASES = [*available("solver.basis"), LIMITED]
 DX, NX, NY, ORIGIN = 0.13, 23, 19, np.array([-0.7, 0.4])  # nothing square, nothing at zero
 EXACT = 1e-13
 KINDS = {name: ["near I", "far from I"] for name in BASES}
@@ -32,7 +33,7 @@ class Table:
 
 def fill(name: str, x: Floats, F: Floats, r0: Floats, box: Any = (0.0, NX - 1.0, 0.0, NY - 1.0)) -> Table:
     """Call the kernel of basis `name` on up to BLOCK particles, and unpack the layout of solver/weights.py."""
-    basis, n = load("solver.basis", name), len(x)
+    basis, n = create("solver.basis", name), len(x)
     K, domain = basis.support, basis.domain(*bodies(x, F, r0))
     table, node = np.full(3 * K * BLOCK, -7.0), np.full(K * BLOCK, -7, np.int64)
     ok = basis.fill(x.ravel(), F.ravel(), domain.ravel(), *ORIGIN, 1 / DX, NX, NY, *map(float, box), table, node)
@@ -140,9 +141,20 @@ def spline(degree: int) -> Any:
 
 
 def reference_cpdi(x: Floats, F: Floats, r0: Floats) -> tuple[Floats, Floats]:
-    """The general form for quadrilaterals, from the corners and the shoelace area, not from side vectors."""
-    (r1, r2), S = (F @ r0.T).T, []
-    corner = np.array([x - r1 - r2, x + r1 - r2, x + r1 + r2, x - r1 + r2])
+    """From the corners; not from side vectors."""
+    r1, r2 = (F @ r0.T).T
+    return quadrilateral(np.array([x - r1 - r2, x + r1 - r2, x + r1 + r2, x - r1 + r2]))
+
+
+def reference_limited(x: Floats, F: Floats, r0: Floats) -> tuple[Floats, Floats]:
+    """Corners no further from the middle than the limit."""
+    away = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) @ (F @ r0.T).T
+    distance, limit = np.hypot(*away.T)[:, None], float(LIMITED.partition("=")[2]) * DX
+    return quadrilateral(x + np.where(distance > limit, away / distance * limit, away))
+
+
+def quadrilateral(corner: Floats) -> tuple[Floats, Floats]:
+    """The general form for quadrilaterals, here parallelograms, with the shoelace area."""
     (x1, y1), (x2, y2), (x3, y3), (x4, y4) = corner
     V = shoelace(corner)
     S = [hat(c)[0] for c in corner]
@@ -162,6 +174,7 @@ REFERENCE = {
     "bspline2": spline(2),
     "bspline3": spline(3),
     "cpdi": reference_cpdi,
+    LIMITED: reference_limited,
     "cpdi2": reference_cpdi,  # the same while the domain is a parallelogram; test_quadrilaterals has the others
 }
 
@@ -205,7 +218,7 @@ def test_one_bad_place_refuses_the_block(name: str, bad: float) -> None:
 
 
 @pytest.mark.parametrize("entry", range(4))
-@pytest.mark.parametrize("name", ["cpdi", "cpdi2"])
+@pytest.mark.parametrize("name", ["cpdi", "cpdi2", LIMITED])
 def test_nan_in_a_domain_refuses_the_block(name: str, entry: int) -> None:
     x, F, r0 = particles(np.random.default_rng(5), "near I")
     F.reshape(-1, 4)[3, entry] = np.nan
@@ -228,7 +241,7 @@ def test_gimp_refuses_domains_wider_than_a_cell() -> None:
 
 def test_quadrilaterals() -> None:
     """CPDI2 on crooked domains: partition of unity, the centroid, Gauss points in the bilinear map, inside out."""
-    rng, basis = np.random.default_rng(8), load("solver.basis", "cpdi2")
+    rng, basis = np.random.default_rng(8), create("solver.basis", "cpdi2")
     for _ in range(50):
         x, F, r0 = particles(rng, "far from I", 1)
         corner = bodies(x, F, r0)[1](bodies(x, F, r0)[0].corners.reshape(-1, 2)) + 0.05 * DX * rng.random((4, 2))
@@ -300,9 +313,9 @@ def test_short_blocks(name: str, count: int) -> None:
     whole, part = fill(name, x, F, r0), fill(name, x[:count], F[:count], r0[:count])
     for array in ("node", "N", "dN"):
         np.testing.assert_array_equal(getattr(part, array), getattr(whole, array)[:count])
-    K = load("solver.basis", name).support
+    basis = create("solver.basis", name)
+    K = basis.support
     table, node = np.full(3 * K * BLOCK, -7.0), np.full(K * BLOCK, -7, np.int64)
-    basis = load("solver.basis", name)
     domain = basis.domain(*bodies(x[:count], F[:count], r0[:count]))
     one = x[:count].ravel(), F[:count].ravel(), domain.ravel()
     basis.fill(*one, *ORIGIN, 1 / DX, NX, NY, 0.0, NX - 1.0, 0.0, NY - 1.0, table, node)
@@ -318,6 +331,29 @@ def test_on_a_node(name: str) -> None:
     assert t.ok
     assert t.N.sum() == pytest.approx(1, abs=EXACT)
     np.testing.assert_allclose(t.N @ place(t.node)[0], x, atol=EXACT)
+
+
+def test_a_limit_cuts_long_domains_alone() -> None:
+    """What is shorter has the bits of CPDI without one; `cut` says which, `corners` gives what the fill takes."""
+    x, F, r0 = particles(np.random.default_rng(10), "far from I")
+    basis = create("solver.basis", LIMITED)
+    domain, whole = basis.domain(*bodies(x, F, r0)), create("solver.basis", "cpdi")
+    cut = basis.cut(F, domain, DX)
+    assert 3 < cut.sum() < len(x) - 3
+    free, limited = fill("cpdi", x, F, r0), fill(LIMITED, x, F, r0)
+    close = np.abs(limited.dN - free.dN).max(axis=(1, 2)) < 1e-12 / DX
+    np.testing.assert_array_equal(close, ~cut)
+    corners = basis.corners(x, F, domain, DX)
+    assert np.linalg.norm(corners - x[:, None], axis=2).max() == pytest.approx(basis.limit * DX, rel=1e-12)
+    uncut = whole.corners(x, F, domain[:, :4], DX)
+    np.testing.assert_allclose(corners[~cut], uncut[~cut], atol=1e-15)
+    assert not whole.cut(F, domain[:, :4], DX).any()
+
+
+@pytest.mark.parametrize("limit", ["0", "-1"])
+def test_a_limit_above_zero(limit: str) -> None:
+    with pytest.raises(ValueError, match="must be above zero"):
+        create("solver.basis", f"cpdi:limit={limit}")
 
 
 @pytest.mark.parametrize("ppc", [1, 4, 9, 16])

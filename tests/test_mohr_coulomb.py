@@ -295,7 +295,7 @@ def test_a_rigid_rotation_of_a_failing_particle() -> None:
         law.update(p, 1.0)
     assert np.abs(p.sigma - turned(before, np.full(count, np.pi / 3))).max() < 1e-11 * 2e4
     assert np.abs(p.history).max() < 1e-13
-    assert p.history.shape == (count, 2)
+    assert p.history.shape == (count, len(law.memory))
 
 
 @pytest.mark.parametrize("psi", [0.0, 1.0, 31.0])
@@ -414,6 +414,6 @@ def test_the_ends_of_phi(phi: float) -> None:
 def test_defaults_are_those_of_the_column() -> None:
     law = MohrCoulomb()
     assert (law.E, law.nu, law.rho0, law.phi, law.psi, law.c, law.sigma_t) == (840e3, 0.3, 2650, 31, 1, 0, 0)
-    assert law.memory == ("gamma_p", "eps_v_p")
+    assert law.memory == ("gamma_p", "eps_v_p", "void")
     assert planes(law)[0].shape == (9, 3)
     assert law.wave_speed() == pytest.approx(20.657, abs=1e-3)

@@ -14,6 +14,7 @@ from solver.material.neo_hookean import NeoHookean
 from solver.plugins import available, load
 from solver.state import Grid, Particles
 from solver.step import Model, RunFailed, Scheme, advance, check_time_step, grid_to_particles, particles_to_grid
+from solver.transfers._passes import advect
 from solver.transfers.flip import Flip
 from solver.transfers.pic import Pic
 
@@ -206,6 +207,59 @@ def test_pure_rotation_inflates_f(name: str, steps: int, grown: float) -> None:
     radius = np.linalg.norm(p.x - 0.5, axis=1) / np.linalg.norm(p.X - 0.5, axis=1)
     np.testing.assert_allclose(radius, np.sqrt(factor), rtol=1e-11)
     assert factor - 1 == pytest.approx(grown, rel=0.02)
+
+
+@pytest.mark.parametrize("stress", ["usl", "musl"])
+def test_the_exponential_update(stress: str) -> None:
+    """det F grows by 1 + (w dt)^4/4 a step of a rotation, order 2 to exp(t L), and det F stays above zero."""
+    errors = []
+    for steps in (25, 50, 100):
+        m = model("mpm", lambda X: (np.abs(X - 0.5) < DX).all(axis=1), dt=1.0 / steps)
+        m.scheme = Scheme(deformation="exponential", stress=stress)
+        w, p = np.pi / 2, m.particles
+        for _ in range(steps):
+            if stress == "usl":
+                m.grid.velocity[:] = (m.grid.nodes - 0.5) @ [[0, w], [-w, 0]]
+                grid_to_particles(m)
+            else:
+                motion = np.c_[(m.grid.nodes - 0.5) @ [[0, w], [-w, 0]], np.zeros((len(m.grid.nodes), 2))]
+                advect(m, motion, motion)
+        np.testing.assert_allclose(np.linalg.det(p.F), (1 + (w * m.dt) ** 4 / 4) ** steps, rtol=1e-11)
+        errors.append(np.abs(p.F[0] - [[0, -1], [1, 0]]).max())
+    np.testing.assert_allclose(np.log2(np.array(errors[:-1]) / errors[1:]), 2, atol=0.05)
+    for deformation, J in (("exponential", 0.505), ("linear", -0.1)):  # a step that compresses by 1.1
+        m = model("mpm", lambda X: (np.abs(X - 0.5) < DX).all(axis=1), dt=1.0)
+        m.scheme = Scheme(deformation=deformation)  # type: ignore[arg-type]
+        m.grid.velocity[:, 0] = -1.1 * (m.grid.nodes[:, 0] - 0.5)
+        if J > 0:
+            grid_to_particles(m)
+            np.testing.assert_allclose(np.linalg.det(m.particles.F), J, rtol=1e-12)
+        else:
+            with pytest.raises(RunFailed, match="det F <= 0"):
+                grid_to_particles(m)
+
+
+def test_an_unknown_deformation() -> None:
+    with pytest.raises(ValueError, match="choose from linear, exponential"):
+        Scheme(deformation="cubic")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("stops", [False, True])
+def test_a_body_that_strikes_a_floor(stops: bool) -> None:
+    """With `stops` the particles lose what the wall's impulse is, to the bit of the sums; without it they keep it."""
+    m = model("cpdi", lambda X: (X[:, 1] < 4 * DX) & (np.abs(X[:, 0] - 0.5) < 4 * DX), "fixed", law=SOFT)
+    m.walls.stops = stops
+    p, g = m.particles, m.grid
+    p.v[:, 1] = -1.0
+    advance(m, still)
+    bottom = p.x[:, 1] < 0.5 * DX
+    if stops:
+        held = m.walls.held[:, 1]
+        impulse = -g.momentum[held, 1].sum()
+        assert p.m @ (p.v[:, 1] + 1.0) == pytest.approx(impulse, rel=1e-12)
+        assert np.abs(p.v[bottom, 1]).max() < 0.3
+    else:
+        np.testing.assert_allclose(p.v[:, 1], -1.0, atol=1e-6)
 
 
 @pytest.mark.parametrize("kind", ["roller", "fixed"])

@@ -19,6 +19,7 @@ PLUGINS = {
     "solver.material": {"start", "update", "wave_speed"},
     "solver.rates": {"unrotate", "rotate", "order"},
     "solver.misreadings": {"unrotate", "rotate", "order"},
+    "solver.smoothing": {"of", "where", "stress", "strain", "check"},
     "solver.transfers": {"share", "start", "give", "filter", "take"},
     "mms.solutions": {"displacement", "boundary", "lower", "upper", "duration"},
 }

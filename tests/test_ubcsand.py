@@ -351,7 +351,7 @@ numbers = st.one_of(
 @given(st.tuples(*[numbers] * 4), st.tuples(*[st.floats(-0.5, 0.5)] * 3), st.floats(0, LAW.eta_f))
 def test_no_state_breaks_it(sigma: tuple[float, ...], de: tuple[float, ...], eta: float) -> None:
     """From finite states comes an admissible stress, eta_m within bounds; the same step once more ends as well."""
-    state = State(np.zeros(3), np.array(sigma), np.array([eta, 0, 0, 0, 0, 0.0]))
+    state = State(np.zeros(3), np.array(sigma), np.r_[eta, np.zeros(len(LAW.memory) - 1)])
     for _ in range(2):
         state = Element(LAW).step(state, np.array([de]))[0]
         huge = max(map(abs, sigma)) > 1e100

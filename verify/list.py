@@ -12,6 +12,7 @@ from solver.plugins import (
     METHODS,
     MISREADINGS,
     RATES,
+    SMOOTHINGS,
     SOLUTIONS,
     TRANSFERS,
     available,
@@ -19,12 +20,13 @@ from solver.plugins import (
 )
 from verify.output import printing
 
-PACKAGES = (CASES, METHODS, TRANSFERS, LAYOUTS, SOLUTIONS, MATERIALS, RATES, MISREADINGS)
+PACKAGES = (CASES, METHODS, TRANSFERS, SMOOTHINGS, LAYOUTS, SOLUTIONS, MATERIALS, RATES, MISREADINGS)
 REMARKS = {RATES: " (of the laws in rate form)", MISREADINGS: " (negative controls, taken as a rate)"}
 
 
 def list_plugins() -> None:
-    """List cases, methods, transfers, layouts, solutions, materials, rates and misreadings with a line about each."""
+    """List cases, methods, transfers, smoothings, layouts, solutions, materials, rates and
+    misreadings with a line about each."""
     with printing():
         for package in PACKAGES:
             typer.echo(f"{KINDS[package]}s{REMARKS.get(package, '')}")

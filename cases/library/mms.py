@@ -198,11 +198,11 @@ def snapshot(run: Run, model: Model, comparison: Comparison) -> Arrays:
     p, count = model.particles, len(model.particles)
     shapes: dict[str, tuple[int, ...]] = {"X": (2,), "x": (2,), "F": (2, 2), "corners": (4, 2), "error_u": ()}
     arrays = {name: np.empty((count, *shape), np.float32) for name, shape in shapes.items()}
-    known = model.basis.corners(p.x[:1], p.F[:1], p.domain[:1]) is not None
+    known = model.basis.corners(p.x[:1], p.F[:1], p.domain[:1], model.grid.dx) is not None
     r0 = None if known else laid_out(run, create(SOLUTIONS, run.solution), comparison.exact).r0
     for rows in (slice(lo, lo + PIECE) for lo in range(0, count, PIECE)):
         X, x, F, place = p.X[rows], p.x[rows], p.F[rows], p.id[rows]
-        corners = model.basis.corners(x, F, p.domain[rows])
+        corners = model.basis.corners(x, F, p.domain[rows], model.grid.dx)
         if corners is None and r0 is not None:
             corners = parallelograms(x, np.einsum("pab,psb->psa", F, r0[place]))
         error = np.hypot(*(x - comparison.exact.x(X, model.time)).T)

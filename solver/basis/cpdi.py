@@ -5,11 +5,18 @@ N = 1/4 sum S(corner), and dN is the exact mean gradient of that interpolation o
 corners, because the literature holds both half and full side vectors. Order 2, large deformation included.
 Source: Sadeghirad, Brannon & Burghardt 2011; paper eqs. (2), (3). The paper leaves the gradient weights out; they are
 edge integrals of the interpolation, divided by the area.
+
+With cpdi:limit=1 no half diagonal r1 +- r2 is longer than one cell: longer ones are cut to it, each in its direction
+(Homel, Brannon & Guilkey 2016). Without it, domains of a flow grow beyond their neighbours and tie together what has
+parted; with it, they part. The volume of the particle stays J V0, and is the area of its domain no longer.
 """
 
+from dataclasses import dataclass
+from math import inf
 from typing import ClassVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from solver._jit import kernel
 from solver.layout import Layout, parallelograms
@@ -17,54 +24,121 @@ from solver.state import Floats
 from solver.weights import FILL, Basis, Place, bilinear, outside
 
 
+@kernel(inline=True)
+def half_sides(b, at, F, domain):
+    """r1, r2 = F r0 of particle b, whose numbers start at `at`."""
+    return (
+        F[4 * b] * domain[at] + F[4 * b + 1] * domain[at + 1],
+        F[4 * b + 2] * domain[at] + F[4 * b + 3] * domain[at + 1],
+        F[4 * b] * domain[at + 2] + F[4 * b + 1] * domain[at + 3],
+        F[4 * b + 2] * domain[at + 2] + F[4 * b + 3] * domain[at + 3],
+    )
+
+
+@kernel(inline=True)
+def passed(b, x, r1x, r1y, r2x, r2y, ox, oy, inv_dx, x0, x1, y0, y1):
+    """How many sides of the box a corner has passed. Before the weights are written: after it nothing vectorises."""
+    px = (x[2 * b] - ox) * inv_dx
+    py = (x[2 * b + 1] - oy) * inv_dx
+    ex = max(abs(r1x + r2x), abs(r1x - r2x)) * inv_dx
+    ey = max(abs(r1y + r2y), abs(r1y - r2y)) * inv_dx
+    return outside(x0, x1, y0, y1, px - ex, px + ex, py - ey, py + ey)
+
+
+@kernel(inline=True)
+def parallelogram(b, x, r1x, r1y, r2x, r2y, ox, oy, inv_dx, ny, table, node):
+    """N and dN of the four nodes around each corner, sixteen in all, some of them the same."""
+    per_area = 0.25 / (r1x * r2y - r1y * r2x)
+    ax = (r1y - r2y) * per_area  # gradient weight of corner 1, and with the other sign of corner 3
+    ay = (r2x - r1x) * per_area
+    bx = (r1y + r2y) * per_area  # of corner 2, and of corner 4
+    by = -(r1x + r2x) * per_area
+    px = (x[2 * b] - ox) * inv_dx
+    py = (x[2 * b + 1] - oy) * inv_dx
+    sx = (r1x + r2x) * inv_dx  # the two half diagonals, in cells
+    sy = (r1y + r2y) * inv_dx
+    dx = (r1x - r2x) * inv_dx
+    dy = (r1y - r2y) * inv_dx
+    bilinear(0, 16, b, px - sx, py - sy, 0.25, ax, ay, ny, table, node)
+    bilinear(4, 16, b, px + dx, py + dy, 0.25, bx, by, ny, table, node)
+    bilinear(8, 16, b, px + sx, py + sy, 0.25, -ax, -ay, ny, table, node)
+    bilinear(12, 16, b, px - dx, py - dy, 0.25, -bx, -by, ny, table, node)
+
+
 @kernel(FILL)
 def fill(x, F, r0, ox, oy, inv_dx, nx, ny, x0, x1, y0, y1, table, node):
-    """N and dN of the four nodes around each corner, sixteen in all, some of them the same; see solver/weights.py."""
+    """See solver/weights.py."""
     bad = 0
     for b in range(x.shape[0] // 2):
-        r1x = F[4 * b] * r0[4 * b] + F[4 * b + 1] * r0[4 * b + 1]
-        r1y = F[4 * b + 2] * r0[4 * b] + F[4 * b + 3] * r0[4 * b + 1]
-        r2x = F[4 * b] * r0[4 * b + 2] + F[4 * b + 1] * r0[4 * b + 3]
-        r2y = F[4 * b + 2] * r0[4 * b + 2] + F[4 * b + 3] * r0[4 * b + 3]
-        per_area = 0.25 / (r1x * r2y - r1y * r2x)
-        ax = (r1y - r2y) * per_area  # gradient weight of corner 1, and with the other sign of corner 3
-        ay = (r2x - r1x) * per_area
-        bx = (r1y + r2y) * per_area  # of corner 2, and of corner 4
-        by = -(r1x + r2x) * per_area
-        px = (x[2 * b] - ox) * inv_dx
-        py = (x[2 * b + 1] - oy) * inv_dx
-        sx = (r1x + r2x) * inv_dx  # the two half diagonals, in cells
-        sy = (r1y + r2y) * inv_dx
-        dx = (r1x - r2x) * inv_dx
-        dy = (r1y - r2y) * inv_dx
-        ex = max(abs(sx), abs(dx))
-        ey = max(abs(sy), abs(dy))
-        bad += outside(x0, x1, y0, y1, px - ex, px + ex, py - ey, py + ey)
-        bilinear(0, 16, b, px - sx, py - sy, 0.25, ax, ay, ny, table, node)
-        bilinear(4, 16, b, px + dx, py + dy, 0.25, bx, by, ny, table, node)
-        bilinear(8, 16, b, px + sx, py + sy, 0.25, -ax, -ay, ny, table, node)
-        bilinear(12, 16, b, px - dx, py - dy, 0.25, -bx, -by, ny, table, node)
+        r1x, r1y, r2x, r2y = half_sides(b, 4 * b, F, r0)
+        bad += passed(b, x, r1x, r1y, r2x, r2y, ox, oy, inv_dx, x0, x1, y0, y1)
+        parallelogram(b, x, r1x, r1y, r2x, r2y, ox, oy, inv_dx, ny, table, node)
     return bad == 0
 
 
-class Cpdi(Basis):
-    """Sixteen neighbours, order 2."""
+@kernel(FILL)
+def fill_limited(x, F, domain, ox, oy, inv_dx, nx, ny, x0, x1, y0, y1, table, node):
+    """The same with half diagonals no longer than the fifth number of each domain, in cells."""
+    bad = 0
+    for b in range(x.shape[0] // 2):
+        r1x, r1y, r2x, r2y = half_sides(b, 5 * b, F, domain)
+        sx = r1x + r2x
+        sy = r1y + r2y
+        dx = r1x - r2x
+        dy = r1y - r2y
+        s = np.sqrt(sx * sx + sy * sy)
+        d = np.sqrt(dx * dx + dy * dy)
+        long = domain[5 * b + 4] / inv_dx
+        s = long / (s + long + abs(s - long))  # half of long / max(s, long); as a branch it would not vectorise
+        d = long / (d + long + abs(d - long))
+        r1x = s * sx + d * dx
+        r1y = s * sy + d * dy
+        r2x = s * sx - d * dx
+        r2y = s * sy - d * dy
+        bad += passed(b, x, r1x, r1y, r2x, r2y, ox, oy, inv_dx, x0, x1, y0, y1)
+        parallelogram(b, x, r1x, r1y, r2x, r2y, ox, oy, inv_dx, ny, table, node)
+    return bad == 0
 
+
+@dataclass(frozen=True)
+class Cpdi(Basis):
+    """Sixteen neighbours, order 2. `limit` of the half diagonals, in cells; raises ValueError unless above zero."""
+
+    limit: float = inf
     support: ClassVar[int] = 16
     order: ClassVar[float] = 2.0
     fill = staticmethod(fill)
     width: ClassVar[int] = 4
 
-    @staticmethod
-    def domain(layout: Layout, place: Place) -> Floats:
-        """Initial half side vectors r0; F moves them."""
-        return layout.r0.reshape(-1, 4).copy()
+    def __post_init__(self) -> None:
+        if not self.limit > 0:
+            raise ValueError(f"limit = {self.limit} must be above zero: half a diagonal of a domain, in cells")
+        if self.limit < inf:
+            object.__setattr__(self, "fill", fill_limited)
+            object.__setattr__(self, "width", 5)
+
+    def domain(self, layout: Layout, place: Place) -> Floats:
+        """Initial half side vectors r0; F moves them. With a limit, that too."""
+        r0 = layout.r0.reshape(-1, 4).copy()
+        return r0 if self.limit == inf else np.column_stack([r0, np.full(len(r0), self.limit)])
 
     @staticmethod
-    def corners(x: Floats, F: Floats, domain: Floats) -> Floats:
-        """x - r1 - r2 and so on, r = F r0."""
-        r0 = domain.reshape(-1, 2, 2)
-        return parallelograms(x, np.einsum("pab,psb->psa", F, r0))
+    def corners(x: Floats, F: Floats, domain: Floats, dx: float) -> Floats:
+        """x - r1 - r2 and so on, r = F r0, cut where there is a limit."""
+        r = np.einsum("pab,psb->psa", F, domain[:, :4].reshape(-1, 2, 2))
+        if domain.shape[1] == 5:
+            half = np.stack([r[:, 0] + r[:, 1], r[:, 0] - r[:, 1]], axis=1)
+            half *= np.minimum(1.0, dx * domain[:, 4:] / np.linalg.norm(half, axis=2))[:, :, None]
+            r = np.stack([half[:, 0] + half[:, 1], half[:, 0] - half[:, 1]], axis=1) / 2
+        return parallelograms(x, r)
+
+    @staticmethod
+    def cut(F: Floats, domain: Floats, dx: float) -> NDArray[np.bool_]:
+        """Whether a half diagonal is longer than the limit (P,)."""
+        r = np.einsum("pab,psb->psa", F, domain[:, :4].reshape(-1, 2, 2))
+        longest = np.maximum(np.linalg.norm(r[:, 0] + r[:, 1], axis=1), np.linalg.norm(r[:, 0] - r[:, 1], axis=1))
+        too_long: NDArray[np.bool_] = longest > (dx * domain[:, 4] if domain.shape[1] == 5 else inf)
+        return too_long
 
     @staticmethod
     def refusal(F: Floats, domain: Floats, dx: float) -> str:

@@ -90,7 +90,7 @@ class Cpdi2(Basis):
         return place(layout.corners.reshape(-1, 2)).reshape(-1, 8)
 
     @staticmethod
-    def corners(x: Floats, F: Floats, domain: Floats) -> Floats:
+    def corners(x: Floats, F: Floats, domain: Floats, dx: float) -> Floats:
         """As they have moved."""
         return domain.reshape(-1, 4, 2)
 

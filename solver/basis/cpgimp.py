@@ -72,7 +72,7 @@ class Cpgimp(Basis):
         return half_lengths(layout)
 
     @staticmethod
-    def corners(x: Floats, F: Floats, domain: Floats) -> Floats:
+    def corners(x: Floats, F: Floats, domain: Floats, dx: float) -> Floats:
         """Of rectangles along the axes."""
         half = np.abs(np.diagonal(F, axis1=1, axis2=2)) * domain
         return parallelograms(x, half[:, :, None] * np.eye(2))

@@ -78,7 +78,7 @@ class Gimp(Basis):
         return half_lengths(layout)
 
     @staticmethod
-    def corners(x: Floats, F: Floats, domain: Floats) -> Floats:
+    def corners(x: Floats, F: Floats, domain: Floats, dx: float) -> Floats:
         """Of rectangles along the axes."""
         half = domain
         return parallelograms(x, half[:, :, None] * np.eye(2))

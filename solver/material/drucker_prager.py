@@ -28,13 +28,16 @@ from solver.objective import RESPOND
 from solver.principal import in_order, in_plane
 from solver.rate_law import RateLaw
 from solver.state import Floats
+from solver.voids import check_void, close_void
 
 
 @kernel(RESPOND)
 def respond(constants, sigma, de, history):
-    """Elastic trial stress, and its return where it is not admissible; history gamma_p, eps_v_p."""
+    """Elastic trial stress, and its return where it is not admissible; history gamma_p, eps_v_p, void."""
     lam, shear, slope, strength = constants[0], constants[1], constants[2], constants[3]
     for b in range(sigma.shape[0] // 4):
+        if history[3 * b + 2] != 0.0:
+            history[3 * b + 2] = close_void(b, de, history[3 * b + 2])
         bulk = lam * (de[3 * b] + de[3 * b + 1])
         xx = sigma[4 * b] + (bulk + shear * de[3 * b])
         yy = sigma[4 * b + 1] + (bulk + shear * de[3 * b + 1])
@@ -52,8 +55,9 @@ def respond(constants, sigma, de, history):
             share, mean = finite, constants[6] + finite
             if step < root:
                 share, mean = 1.0 - step / root, p - step * constants[5]
-            history[2 * b] += (1.0 - share) * (t1 - t3) / shear
-            history[2 * b + 1] += (p - mean) * constants[7]
+            opens = constants[8] > 0.0 and not step < root
+            history[3 * b] += (1.0 - share) * (t1 - t3) / shear
+            history[3 * b + (2 if opens else 1)] += (p - mean) * constants[7]
             xx, yy, zz, xy = mean + share * sxx, mean + share * syy, mean + share * szz, share * xy
         sigma[4 * b] = xx
         sigma[4 * b + 1] = yy
@@ -89,13 +93,15 @@ class DruckerPrager(RateLaw, Elastic):
     psi: float = 1.0
     c: float = 0.0
     cone: str = "plane_strain"
-    memory: ClassVar[tuple[str, ...]] = ("gamma_p", "eps_v_p")
+    void: float = 0.0
+    memory: ClassVar[tuple[str, ...]] = ("gamma_p", "eps_v_p", "void")
     respond = staticmethod(respond)
 
     def __post_init__(self) -> None:
         Elastic.__post_init__(self)
         RateLaw.__post_init__(self)
         check_strength(self.phi, self.psi, self.c)
+        check_void(self.void, self.c)
         if self.cone not in CONES:
             raise ValueError(f"cone = {self.cone!r} must be one of {', '.join(CONES)}")
 
@@ -105,5 +111,6 @@ class DruckerPrager(RateLaw, Elastic):
         stiff = self.lam + 2 * self.mu / 3  # bulk modulus
         ratio, apex = d * stiff / self.mu, self.c / tan(radians(self.phi))
         return np.array(
-            [self.lam, 2 * self.mu, a, a * apex, 1 / (1 + a * ratio), ratio, apex, 1 / stiff]
+            [self.lam, 2 * self.mu, a, a * apex, 1 / (1 + a * ratio), ratio, apex, 1 / stiff,
+             self.void]
         )  # fmt: skip

@@ -24,6 +24,7 @@ from solver.objective import RESPOND
 from solver.principal import advance_elastic, along, in_order, in_place
 from solver.rate_law import RateLaw
 from solver.state import Floats
+from solver.voids import check_void, close_void
 
 
 @kernel(inline=True)
@@ -62,12 +63,15 @@ def returned(t1, t2, t3, f, constants):
 
 @kernel(RESPOND)
 def respond(constants, sigma, de, history):
-    """Elastic trial stress, and its return where it is not admissible; history gamma_p, eps_v_p.
+    """Elastic trial stress, and its return where it is not admissible; history gamma_p, eps_v_p, void.
 
     Two loops: the first has no branches and vectorises, roots included, which makes the whole faster by a half.
     """
     shear, k, cohesive, tension = constants[1], constants[2], constants[3], constants[4]
     plane = np.empty(3 * (sigma.shape[0] // 4))
+    for b in range(sigma.shape[0] // 4):
+        if history[3 * b + 2] != 0.0:
+            history[3 * b + 2] = close_void(b, de, history[3 * b + 2])
     advance_elastic(constants[0], shear, sigma, de, plane)
     for b in range(sigma.shape[0] // 4):
         up, down, zz = plane[3 * b], plane[3 * b + 1], sigma[4 * b + 2]
@@ -76,8 +80,9 @@ def respond(constants, sigma, de, history):
         if not (f <= 0.0 and t1 <= tension):
             xx, yy, xy = sigma[4 * b], sigma[4 * b + 1], sigma[4 * b + 3]
             s1, s2, s3 = returned(t1, t2, t3, f, constants)
-            history[2 * b] += (t1 - s1 - t3 + s3) / shear
-            history[2 * b + 1] += (t1 - s1 + t2 - s2 + t3 - s3) * constants[17]
+            opens = constants[18] > 0.0 and s3 >= tension
+            history[3 * b] += (t1 - s1 - t3 + s3) / shear
+            history[3 * b + (2 if opens else 1)] += (t1 - s1 + t2 - s2 + t3 - s3) * constants[17]
             finite = 0.0 * (xx + yy + zz + xy)  # corners are finite whatever comes in: a lost state stays lost
             up, down, zz = in_place(s1 + finite, s2 + finite, s3 + finite, up, down, zz)
             xx, yy, xy = along(up, down, xx, yy, xy, plane[3 * b + 2])
@@ -96,7 +101,8 @@ class MohrCoulomb(RateLaw, Elastic):
     states around the apex without a return, so psi < 0 is refused.
 
     The history holds gamma_p, the sum of the increments of e1 - e3 of the plastic strain, and eps_v_p, its volume,
-    positive where the soil dilates.
+    positive where the soil dilates; with void=1 (see solver/voids.py) what opens at the apex is not in eps_v_p but in
+    the void strain, so that elastic volume + eps_v_p + void is the volume strain.
     """
 
     E: float = 840e3
@@ -105,13 +111,15 @@ class MohrCoulomb(RateLaw, Elastic):
     psi: float = 1.0
     c: float = 0.0
     sigma_t: float = 0.0
-    memory: ClassVar[tuple[str, ...]] = ("gamma_p", "eps_v_p")
+    void: float = 0.0
+    memory: ClassVar[tuple[str, ...]] = ("gamma_p", "eps_v_p", "void")
     respond = staticmethod(respond)
 
     def __post_init__(self) -> None:
         Elastic.__post_init__(self)
         RateLaw.__post_init__(self)
         check_strength(self.phi, self.psi, self.c)
+        check_void(self.void, self.c)
         if not 0 <= self.sigma_t < inf:
             raise ValueError(f"sigma_t = {self.sigma_t} must be zero or more, and finite")
 
@@ -131,7 +139,7 @@ class MohrCoulomb(RateLaw, Elastic):
         lower = [u, v, 2 * v * cohesive]
         return np.array(
             [self.lam, 2 * self.mu, k, cohesive, tension, low, nu, *plane, nu / (1 - nu), *upper, *lower,
-             (1 - 2 * nu) / self.E]
+             (1 - 2 * nu) / self.E, self.void]
         )  # fmt: skip
 
 

@@ -32,12 +32,13 @@ from solver.mobilised import onset, slip, unit
 from solver.objective import RESPOND
 from solver.rate_law import RateLaw
 from solver.state import Floats
+from solver.voids import check_void, close_void
 
 PASSES = 3
 CLOSE = 0.8  # cosine between the axes of the middle and of the end; beyond it the return is radial
 NOISE = 1e-9  # of s: a shear stress below it is none, and cannot change its sign
 SETTLED = 1e-12  # of s: an elastic step need not be passed again
-MEMORY = ("eta_m", "gamma_p", "eps_v_p", "work_p", "reversals", "detached")
+MEMORY = ("eta_m", "gamma_p", "eps_v_p", "work_p", "reversals", "detached", "void")
 
 
 @kernel(RESPOND)
@@ -46,11 +47,14 @@ def respond(constants, sigma, de, history):
     Ge, ne, Ke, me, Gp, n_p = constants[0], constants[1], constants[2], constants[3], constants[4], constants[5]
     a, eta_f, eta_cv, per_Pa, s_min = constants[6], constants[7], constants[8], constants[9], constants[10]
     shift, cut, reversal, secondary = constants[11], constants[12], constants[13], constants[14]
+    open_ = constants[15]
     for b in range(sigma.shape[0] // 4):
+        if history[7 * b + 6] != 0.0:
+            history[7 * b + 6] = close_void(b, de, history[7 * b + 6])
         xx, yy, zz, xy = sigma[4 * b], sigma[4 * b + 1], sigma[4 * b + 2], sigma[4 * b + 3]
         dxx, dyy, dxy = de[3 * b], de[3 * b + 1], de[3 * b + 2]
-        eta_m = history[6 * b]
-        turns = history[6 * b + 4]
+        eta_m = history[7 * b]
+        turns = history[7 * b + 4]
         volume = dxx + dyy
         start = -0.5 * (xx + yy)
         s = start
@@ -127,19 +131,20 @@ def respond(constants, sigma, de, history):
             sigma[4 * b + 1] = nothing
             sigma[4 * b + 2] = nothing
             sigma[4 * b + 3] = nothing
-            history[6 * b] = 0.0
-            history[6 * b + 5] += 1.0
+            history[7 * b] = 0.0
+            history[7 * b + 5] += 1.0
+            history[7 * b + 6] += open_ * (cut - s) / stiff
         else:
             if L != 0.0:
                 radius = eta * (s + shift)
                 nxy = radius * ny
-                history[6 * b + 1] += L
-                history[6 * b + 2] -= D * L
-                history[6 * b + 3] += (s_mid + shift) * (eta_mid + D) * L - shift * D * L
+                history[7 * b + 1] += L
+                history[7 * b + 2] -= D * L
+                history[7 * b + 3] += (s_mid + shift) * (eta_mid + D) * L - shift * D * L
                 nxx = -s + radius * nx
                 nyy = -s - radius * nx
-            history[6 * b] = ends
-            history[6 * b + 4] = turns + crossed
+            history[7 * b] = ends
+            history[7 * b + 4] = turns + crossed
             sigma[4 * b] = nxx
             sigma[4 * b + 1] = nyy
             sigma[4 * b + 2] = nzz
@@ -156,7 +161,7 @@ class Ubcsand(RateLaw):
     Raises ValueError for what is out of range.
 
     History: eta_m; gamma_p, plastic e1 - e3, summed; eps_v_p, its volume, dilation positive; work_p, plastic work per
-    volume; the number of reversals; how often the particle was detached.
+    volume; the number of reversals; how often the particle was detached; with void=1 the void strain (solver/voids.py).
     """
 
     KGe: float = 100.0
@@ -182,6 +187,7 @@ class Ubcsand(RateLaw):
     s_bound: float = 20e3
     rho0: float = 2650.0
     reversal: float = 0.0
+    void: float = 0.0
     memory: ClassVar[tuple[str, ...]] = MEMORY
     respond = staticmethod(respond)
 
@@ -215,7 +221,7 @@ class Ubcsand(RateLaw):
         return np.array(
             [self.KGe * self.Pa, self.ne, self.KBe * self.Pa, self.me, self.KGp * self.Pa, self.np,
              self.Rf / self.eta_f, self.eta_f, self.eta_cv, 1 / self.Pa, self.s_min * self.Pa, self.shift,
-             -min(self.sigma_t, self.shift), self.reversal, secondary]
+             -min(self.sigma_t, self.shift), self.reversal, secondary, self.void]
         )  # fmt: skip
 
     def initial(self, sigma: Floats) -> Floats:
@@ -262,6 +268,7 @@ def check(law: Ubcsand) -> None:
         raise ValueError(f"K/G must leave (K/G + 1/3) sin^2(phi_pt)/4 below 1, not {worst:.3g}: no step would end")
     if not (0 <= law.c < inf and 0 <= law.sigma_t < inf):
         raise ValueError(f"c = {law.c} and sigma_t = {law.sigma_t} must be zero or more")
+    check_void(law.void, law.c)
     if law.reversal not in (0, 1):
         raise ValueError(f"reversal = {law.reversal} must be 0 or 1")
     if law.reversal and law.rate != "green_naghdi":

@@ -12,7 +12,7 @@ from numba import prange
 from solver._jit import BLOCK, F1, F2, F3, I1, f8, i8, kernel, nothing
 from solver.boundary import solve
 from solver.state import Floats
-from solver.transfer import CHUNK, B, cells_of, invertible
+from solver.transfer import CHUNK, B, cells_of, deform, invertible
 from solver.weights import Fill
 
 if TYPE_CHECKING:
@@ -91,8 +91,8 @@ def collect_all(fill, K, W, x, F, domain, origin, inv_dx, nx, ny, motion, values
         collect_chunk(fill, K, W, start, end, x, F, domain, origin, inv_dx, nx, ny, motion, values)
 
 
-@kernel(i8(Fill, i8, i8, i8, i8, F2, F3, F1, F1, f8, i8, i8, F2, F2, f8, I1))
-def advect_chunk(fill, K, W, start, end, x, F, domain, origin, inv_dx, nx, ny, motion, strain, dt, crossed):
+@kernel(i8(Fill, i8, i8, i8, i8, F2, F3, F1, F1, f8, i8, i8, F2, F2, f8, f8, I1))
+def advect_chunk(fill, K, W, start, end, x, F, domain, origin, inv_dx, nx, ny, motion, strain, dt, half, crossed):
     """The particles start ... end-1; returns and counts as transfer.g2p_chunk."""
     xs = x.reshape(-1)
     Fs = F.reshape(-1)
@@ -124,14 +124,7 @@ def advect_chunk(fill, K, W, start, end, x, F, domain, origin, inv_dx, nx, ny, m
                 Lyy += strain[i, 1] * table[at + dNy]
             x[p, 0] += dt * vx
             x[p, 1] += dt * vy
-            Fxx = F[p, 0, 0]
-            Fxy = F[p, 0, 1]
-            Fyx = F[p, 1, 0]
-            Fyy = F[p, 1, 1]
-            F[p, 0, 0] = Fxx + dt * (Lxx * Fxx + Lxy * Fyx)
-            F[p, 0, 1] = Fxy + dt * (Lxx * Fxy + Lxy * Fyy)
-            F[p, 1, 0] = Fyx + dt * (Lyx * Fxx + Lyy * Fyx)
-            F[p, 1, 1] = Fyy + dt * (Lyx * Fxy + Lyy * Fyy)
+            deform(p, F, Lxx, Lxy, Lyx, Lyy, dt, half)
         cells_of(xs[2 * lo : 2 * hi], origin[0], origin[1], inv_dx, after)
         for b in range(hi - lo):
             crossed[0] += int(before[b] != after[b]) + int(before[BLOCK + b] != after[BLOCK + b])
@@ -140,15 +133,16 @@ def advect_chunk(fill, K, W, start, end, x, F, domain, origin, inv_dx, nx, ny, m
     return lost
 
 
-@kernel(nothing(Fill, i8, i8, F2, F3, F1, F1, f8, i8, i8, F2, F2, f8, I1, I1), parallel=True)
-def advect_all(fill, K, W, x, F, domain, origin, inv_dx, nx, ny, motion, strain, dt, lost, crossed):
-    """x += dt sum N motion and F <- (I + dt L) F, L = sum strain dN; `lost` and `crossed` as in transfer.g2p."""
+@kernel(nothing(Fill, i8, i8, F2, F3, F1, F1, f8, i8, i8, F2, F2, f8, f8, I1, I1), parallel=True)
+def advect_all(fill, K, W, x, F, domain, origin, inv_dx, nx, ny, motion, strain, dt, half, lost, crossed):
+    """x += dt sum N motion, and F of the end of the step by L = sum strain dN; `lost`, `crossed` as in transfer.g2p."""
     for c in prange(lost.shape[0]):
         start = c * CHUNK
         end = min(x.shape[0], start + CHUNK)
         lost[c] = advect_chunk(
-            fill, K, W, start, end, x, F, domain, origin, inv_dx, nx, ny, motion, strain, dt, crossed[c : c + 1]
-        )
+            fill, K, W, start, end, x, F, domain, origin, inv_dx, nx, ny, motion, strain, dt, half,
+            crossed[c : c + 1],
+        )  # fmt: skip
 
 
 def spread(model: "Model", values: Floats) -> Floats:
@@ -176,7 +170,7 @@ def advect(model: "Model", motion: Floats, strain: Floats) -> None:
     g, p, basis = model.grid, model.particles, model.basis
     advect_all(
         basis.fill, basis.support, basis.width, p.x, p.F, p.domain.ravel(), g.origin, 1.0 / g.dx, g.nx, g.ny, motion,
-        strain, model.dt, model.lost, model.crossed,
+        strain, model.dt, model.scheme.half(model.dt), model.lost, model.crossed,
     )  # fmt: skip
 
 
@@ -191,5 +185,5 @@ def walled(model: "Model", momentum: Floats, before: bool = False) -> Floats:
     """The same as (n,4), with the walls' velocities at the end of the step, or before it."""
     g, w, velocity = model.grid, model.walls, np.empty_like(momentum)
     value = w.value - model.dt * w.rate if before else w.value
-    solve(g.mass, momentum, velocity, w.held, value, w.rate, 0.0, model.cutoff, g.ny)
+    solve(g.mass, momentum, velocity, w.held, value, w.rate, False, 0.0, model.cutoff, g.ny)
     return velocity

@@ -1,0 +1,97 @@
+"""What smoothing is: the strain that the law sees and the stress of the internal force, projected in parts.
+
+Three-field (Hu-Washizu) mixed form with discontinuous rates and stresses, after Mast, Mackenzie-Helnwein, Arduino,
+Miller & Shin, J. Comput. Phys. 231 (2012) 5351. In the plane a tensor has a volumetric part (xx + yy)/2 and a
+deviatoric part ((xx - yy)/2, xy); so a smoothed strain stays plane, and rate and stress projections are adjoint. zz is
+not in any force and stays as it is. F, domains and volumes move with the velocities as they are.
+"""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, get_args
+
+import numpy as np
+
+from solver.rate_law import RateLaw
+from solver.smoothing._project import project, strained, strains
+from solver.state import Floats, Particles
+
+if TYPE_CHECKING:
+    from solver.model import Model
+
+Of = Literal["rate", "stress", "both"]
+Where = Literal["cell", "node"]
+Into = Literal["force", "history"]
+RATES = ("green_naghdi", "jaumann")  # their rotations are those of F; a stretched frame would need the smoothed F too
+
+
+@dataclass(frozen=True)
+class Smoothing:
+    """`of`: rate, stress or both; `where`: cell or node; `beta`: share of the projection, the rest is unprojected.
+
+    `into`: force, where the smoothed stress acts at the nodes alone, or history, where the law goes on from it too.
+    Raises ValueError for other words, and unless 0 < beta <= 1.
+    """
+
+    of: Of = "both"
+    where: Where = "cell"
+    beta: float = 1.0
+    into: Into = "force"
+    volumetric: ClassVar[bool] = False
+    deviatoric: ClassVar[bool] = False
+
+    def __post_init__(self) -> None:
+        for name, value, words in (("of", self.of, Of), ("where", self.where, Where), ("into", self.into, Into)):
+            if value not in get_args(words):
+                raise ValueError(f"{name} = {value!r} must be one of {', '.join(get_args(words))}")
+        if not 0 < self.beta <= 1:
+            raise ValueError(f"beta = {self.beta} must lie above 0 and up to 1")
+
+    def check(self, law: Any) -> None:
+        """Raises ValueError for a law that cannot be smoothed."""
+        if not isinstance(law, RateLaw) or law.rate not in RATES:
+            raise ValueError(f"smoothing must have a law in rate form with a rate of {', '.join(RATES)}")
+
+    def stress(self, model: "Model") -> None:
+        """Write particles.felt, the stress of the internal force, at the start of a step."""
+        p = model.particles
+        if self.of == "rate":
+            return
+        felt = p.sigma.copy()
+        felt[:, [0, 1, 3]] = self.smooth(model, p.x, p.sigma[:, [0, 1, 3]])
+        if self.into == "history":
+            p.sigma[:] = felt
+        else:
+            p.felt = felt
+
+    def strain(self, model: "Model", x: Floats) -> Floats | None:
+        """F (P,2,2) of the strain that the law is to see, at the end of a step that began at x (P,2)."""
+        p = model.particles
+        if self.of == "stress":
+            return None
+        motion, felt = np.empty((len(p), 4)), np.empty_like(p.F)
+        strains(p.F_old, p.F, motion)
+        motion[:, :3] = self.smooth(model, x, motion[:, :3])
+        strained(p.F_old, motion, felt)
+        return felt
+
+    def smooth(self, model: "Model", x: Floats, tensor: Floats) -> Floats:
+        """Plane tensors xx, yy, xy (P,3) with the chosen parts projected."""
+        parts = np.stack([tensor[:, 0] + tensor[:, 1], tensor[:, 0] - tensor[:, 1], 2 * tensor[:, 2]], axis=1) / 2
+        chosen = np.flatnonzero([self.volumetric, self.deviatoric, self.deviatoric])
+        means = self.project(model, x, np.ascontiguousarray(parts[:, chosen]))
+        parts[:, chosen] += self.beta * (means - parts[:, chosen])
+        return np.stack([parts[:, 0] + parts[:, 1], parts[:, 0] - parts[:, 1], parts[:, 2]], axis=1)
+
+    def project(self, model: "Model", x: Floats, values: Floats) -> Floats:
+        """Projected values (P,C), by the volumes of the start of the step."""
+        g, out = model.grid, np.empty_like(values)
+        nodes = self.where == "node"
+        project(x, volumes(model.particles), values, g.origin, 1.0 / g.dx, g.nx, g.ny, nodes, out)
+        return out
+
+
+def volumes(particles: Particles) -> Floats:
+    """V0 det F_old (P,)."""
+    F: Floats = particles.F_old
+    V: Floats = particles.V0 * (F[:, 0] * F[:, 3] - F[:, 1] * F[:, 2])
+    return V

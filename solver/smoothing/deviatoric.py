@@ -1,0 +1,16 @@
+"""Deviatoric smoothing: the deviators of D and stress are those of the cell, p is each particle's own.
+
+The paper's remedy for shear locking: "acts on the deviatoric portion of the stress and strain field".
+"""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from solver.smoothing._base import Smoothing
+
+
+@dataclass(frozen=True)
+class Deviatoric(Smoothing):
+    """Parameters as in solver/smoothing/_base.py."""
+
+    deviatoric: ClassVar[bool] = True
