@@ -17,6 +17,7 @@ from solver.weights import Basis
 
 if TYPE_CHECKING:  # their kernels take seconds to compile, and most runs have neither
     from solver.damping import Damping
+    from solver.diagnostics import Budget
     from solver.smoothing._base import Smoothing
 
 Load = Callable[[Particles, float], None]
@@ -86,6 +87,7 @@ class Model:
     scheme: Scheme = Scheme()
     damping: "Damping | None" = None
     smoothing: "Smoothing | None" = None
+    budget: "Budget | None" = None
     steps: int = 0
     damped: float = 0.0  # energy that damping has taken so far
     slabs: Slabs = field(default_factory=Slabs)

@@ -17,7 +17,7 @@ from numba import prange
 from solver._jit import BLOCK, F1, F2, F3, Function, function_type, kernel, nothing
 
 UNROTATE, ROTATE, RESPOND = nothing(F1, F1, F1, F1), nothing(F1, F1, F1), nothing(F1, F1, F1, F1)
-SIGNATURE = nothing(function_type(UNROTATE), function_type(ROTATE), function_type(RESPOND), F1, F2, F3, F3, F2, F2, F1)
+SIGNATURE = nothing(function_type(UNROTATE), function_type(ROTATE), function_type(RESPOND), F1, F2, F3, F3, F2, F2, F2)
 
 
 class Rate:
@@ -35,12 +35,12 @@ def integrate_block(unrotate, rotate, respond, constants, F_old, F_felt, F, sigm
     first = sigma.copy()
     asked = de.copy()  # a law may take from the strain increment what it gives no stress for
     respond(constants, sigma, de, history)
-    for b in range(work.shape[0]):
+    for b in range(work.shape[0] // 2):
         J = 0.5 * (F_old[4 * b] * F_old[4 * b + 3] - F_old[4 * b + 1] * F_old[4 * b + 2])
         J += 0.5 * (F[4 * b] * F[4 * b + 3] - F[4 * b + 1] * F[4 * b + 2])
-        xx = (first[4 * b] + sigma[4 * b]) * asked[3 * b]
-        yy = (first[4 * b + 1] + sigma[4 * b + 1]) * asked[3 * b + 1]
-        work[b] += J * (0.5 * (xx + yy) + (first[4 * b + 3] + sigma[4 * b + 3]) * asked[3 * b + 2])
+        xx, yy, xy = J * asked[3 * b], J * asked[3 * b + 1], 2.0 * J * asked[3 * b + 2]
+        work[2 * b] += first[4 * b] * xx + first[4 * b + 1] * yy + first[4 * b + 3] * xy
+        work[2 * b + 1] += sigma[4 * b] * xx + sigma[4 * b + 1] * yy + sigma[4 * b + 3] * xy
     rotate(F_old, F, sigma)
     for a in range(F.shape[0]):
         F_old[a] = F[a]
@@ -51,7 +51,7 @@ def integrate(unrotate, rotate, respond, constants, F_old, F_felt, F, sigma, his
     """One step of all particles: F_old (P,4) at the start and F (P,2,2) at the end; sigma (P,4), history (P,H).
 
     The strain is that of the way from F_old to `F_felt` (P,2,2), which is F where nothing smooths it. Adds to `work`
-    (P,) the work of the mean stress of the step per reference volume.
+    (P,2) the work per reference volume of the stress at the start and at the end of the step; the mean is the law's.
     """
     count = F.shape[0]
     memory = history.shape[1]
@@ -60,11 +60,13 @@ def integrate(unrotate, rotate, respond, constants, F_old, F_felt, F, sigma, his
     Fs = F.reshape(-1)
     sigmas = sigma.reshape(-1)
     histories = history.reshape(-1)
+    works = work.reshape(-1)
     for block in prange((count + BLOCK - 1) // BLOCK):
         lo = block * BLOCK
         hi = min(lo + BLOCK, count)
         de = np.empty(3 * BLOCK)
         integrate_block(
             unrotate, rotate, respond, constants, olds[4 * lo : 4 * hi], felts[4 * lo : 4 * hi], Fs[4 * lo : 4 * hi],
-            sigmas[4 * lo : 4 * hi], histories[memory * lo : memory * hi], work[lo:hi], de[: 3 * (hi - lo)],
+            sigmas[4 * lo : 4 * hi], histories[memory * lo : memory * hi], works[2 * lo : 2 * hi],
+            de[: 3 * (hi - lo)],
         )  # fmt: skip

@@ -41,7 +41,7 @@ class RateLaw:
         if not particles.F_old.size:
             particles.F_old = particles.F.reshape(-1, 4).copy()
             particles.history = self.initial(particles.sigma)
-            particles.work = np.zeros(len(particles))
+            particles.work = np.zeros((len(particles), 2))
 
     def update(self, particles: Particles, dt: float, felt: Floats | None = None) -> None:
         """Write particles.sigma, history and work, from F_old and the new F; the step's length does not matter.

@@ -70,8 +70,8 @@ class Particles:
     X, x, v, b (P,2): reference place, place, velocity, body force per mass; F (P,2,2); sigma (P,4): Cauchy stress
     xx, yy, zz, xy, tension positive; m, V0 (P,): mass, initial volume; domain (P,W): what the basis keeps of the
     particle's domain; carried (P,C): numbers of the caller that travel with their particle; B (P,4 or 0): what a
-    transfer keeps of a particle's velocity besides v; F_old (P,4 or 0), history (P,H), work (P,): what a law in rate
-    form keeps, F at the end of the last step, its memory of the path, and the work of stress per reference volume;
+    transfer keeps of a particle's velocity besides v; F_old (P,4 or 0), history (P,H), work (P,2 or 0): what a law in
+    rate form keeps, F at the end of the last step, its memory of the path, and work, see solver/objective.py;
     felt (P,4 or 0): the stress of the internal force where smoothing makes it another one than sigma.
     """
 
@@ -98,7 +98,7 @@ class Particles:
         self.F, self.sigma = np.tile(np.eye(2), (count, 1, 1)), np.zeros((count, 4))
         self.carried, self.B, self.id = np.zeros((count, 0)), np.zeros((count, 0)), np.arange(count)
         self.F_old, self.history, self.felt = np.zeros((count, 0)), np.zeros((count, 0)), np.zeros((count, 0))
-        self.work = np.zeros(count)
+        self.work = np.zeros((count, 0))
 
     def __len__(self) -> int:
         return len(self.X)

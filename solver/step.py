@@ -110,9 +110,13 @@ def equation_of_motion(model: Model) -> None:
     """Velocities and accelerations at the nodes, and what the transfer makes of them."""
     g, w = model.grid, model.walls
     w.move(g, model.time, model.dt)
+    if model.budget:
+        model.budget.begin(model)
     if model.damping:
         model.damped += model.damping.apply(g, w, model.dt, model.cutoff)
     solve(g.mass, g.given, g.motion, w.held, w.value, w.rate, w.stops, model.dt, model.cutoff, g.ny)
+    if model.budget:
+        model.budget.end(model)
     model.scheme.transfer.filter(model, g.motion)
     model.scheme.transfer.take(model)
 

@@ -1,0 +1,124 @@
+"""Energy and impulse of a step, term by term, so that a budget is closed without taking any term as the rest.
+
+On the grid w is the velocity before the step, u the one after it, a the acceleration that the particles are given, f the
+force. The step between moves particles, strains them by the gradient of u, and makes w of the next step from u.
+    forces      dt f . (w + dt a/2)             stress and gravity, less damping
+    walls       dt (m a - f) . (w + dt a/2)     what a wall holds; never above zero for walls at rest
+    transfer    forces + walls - gain of the particles + dt/2 f . (u_before - w): velocities on their way to and fro
+    convection  work of the stress on the strain of the particles, less that of its force on u: weights that move
+Work of a law is the mean of that of the stress at the start and at the end of a step. With it
+    kinetic + potential + work + damping - walls + transfer + convection = constant, to round-off, in uniform gravity.
+Transfer and convection are what the method loses, and no energy of the material.
+"""
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from solver._jit import F1, F2, f8, flag, kernel, nothing
+from solver.state import Floats, Particles
+
+if TYPE_CHECKING:
+    from solver.model import Model
+
+TRANSFER, CONVECTION, WALLS, ON_GRID, IMPULSE, SUMS = 0, 1, 2, 3, 4, 6
+
+
+@kernel(nothing(F1, F2, F2, F1, f8, f8, F1))
+def between_steps(mass, given, after, g, dt, cutoff, sums):
+    """Adds what the velocities `after` (n,2) of the last step lose until this one to TRANSFER, and half the work of the
+    new inner forces on them to CONVECTION."""
+    for i in range(mass.shape[0]):
+        if mass[i] > cutoff:
+            for a in range(2):
+                f = given[i, 2 + a]
+                sums[TRANSFER] += 0.5 * dt * f * (after[i, a] - given[i, a] / mass[i])
+                sums[CONVECTION] += 0.5 * dt * (f - mass[i] * g[a]) * after[i, a]
+
+
+@kernel(nothing(F1, F2, F2, F2, flag[:, ::1], F1, f8, f8, F1))
+def in_step(mass, given, motion, undamped, held, g, dt, cutoff, sums):
+    """Adds all that the step does on the grid, and writes the kinetic energy after it to ON_GRID."""
+    sums[ON_GRID] = 0.0
+    for i in range(mass.shape[0]):
+        if mass[i] > cutoff:
+            for a in range(2):
+                u = motion[i, a]
+                mean = given[i, a] / mass[i] + 0.5 * dt * motion[i, 2 + a]
+                impulse = dt * (mass[i] * motion[i, 2 + a] - given[i, 2 + a])
+                sums[ON_GRID] += 0.5 * mass[i] * u * u
+                sums[TRANSFER] += dt * given[i, 2 + a] * mean
+                sums[CONVECTION] += 0.5 * dt * (undamped[i, a] - mass[i] * g[a]) * u
+                if held[i, a]:
+                    sums[WALLS] += impulse * mean
+                    sums[IMPULSE + a] += impulse
+
+
+def kinetic(particles: Particles) -> float:
+    """Kinetic energy of the particles, that of velocities which the grid does not see included."""
+    p = particles
+    return 0.5 * float(p.m @ np.einsum("pa,pa->p", p.v, p.v))
+
+
+def work(particles: Particles) -> float:
+    """Work of the stress so far, by a law in rate form."""
+    return 0.5 * float(particles.V0 @ particles.work.sum(axis=1))
+
+
+@dataclass
+class Budget:
+    """Sums since the start, for a body force `gravity` (2,) per mass and particles with the kinetic energy `before`.
+
+    For update-stress-last and laws in rate form: the stress of a step's start and end is that of the forces.
+    """
+
+    gravity: Floats
+    before: float = 0.0
+    sums: Floats = field(default_factory=lambda: np.zeros(SUMS))
+    after: Floats = field(default_factory=lambda: np.zeros((0, 2)))
+    undamped: Floats = field(default_factory=lambda: np.zeros((0, 2)))
+
+    def begin(self, model: "Model") -> None:
+        """With the forces of each step, before they are damped."""
+        g = model.grid
+        if len(self.after):
+            between_steps(g.mass, g.given, self.after, self.gravity, model.dt, model.cutoff, self.sums)
+        self.undamped = g.force.copy()
+
+    def end(self, model: "Model") -> None:
+        """After the equation of motion of each step."""
+        g, held = model.grid, model.walls.held
+        in_step(g.mass, g.given, g.motion, self.undamped, held, self.gravity, model.dt, model.cutoff, self.sums)
+        self.after = g.velocity.copy()
+
+    def terms(self, model: "Model") -> dict[str, float]:
+        """Energies after a step: kinetic, on_grid, potential, work, damping, walls, transfer, convection.
+
+        `potential` is zero where the particles have x = 0. The force of the last stress has not acted yet: the half of
+        its work that convection lacks, and the last transfer, are those of the next step, so the sum is constant up to
+        one step's work.
+        """
+        p, sums = model.particles, self.sums
+        done, gain = work(p), kinetic(p) - self.before
+        return {
+            "kinetic": kinetic(p),
+            "on_grid": float(sums[ON_GRID]),
+            "potential": -float(p.m @ (p.x @ self.gravity)),
+            "work": done,
+            "damping": model.damped,
+            "walls": float(sums[WALLS]),
+            "transfer": float(sums[TRANSFER] + sums[WALLS]) - gain,
+            "convection": -done - float(sums[CONVECTION]),
+        }
+
+    @property
+    def impulse(self) -> Floats:
+        """Momentum (2,) that the walls have given."""
+        return self.sums[IMPULSE : IMPULSE + 2]
+
+
+def residual(terms: dict[str, float], first: dict[str, float]) -> float:
+    """What the terms of a budget have gained since the first ones, and should not."""
+    signs = {"kinetic": 1, "potential": 1, "work": 1, "damping": 1, "walls": -1, "transfer": 1, "convection": 1}
+    return sum(sign * (terms[name] - first[name]) for name, sign in signs.items())
