@@ -2,7 +2,8 @@
 
 DIR/study.json           the Study
 DIR/runs/<digest>.json   a Result
-DIR/runs/<digest>.npz    the particles at its last step: X, x (P,2), F (P,2,2), corners (P,4,2), error_u (P,), float32
+DIR/runs/<digest>.npz    its arrays, float32. Of mms the particles at the last step: X, x (P,2), F (P,2,2), corners
+                         (P,4,2), error_u (P,); of column see cases/library/column.py
 """
 
 import fcntl
@@ -21,11 +22,11 @@ from zipfile import BadZipFile
 import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
-from cases.study import FORMAT, Result, Study
+from cases.kinds import kind
+from cases.study import FORMAT
 
 Arrays = dict[str, "np.ndarray[Any, np.dtype[np.float32]]"]
 HOUR = 3600.0
-STUDY, RESULT = TypeAdapter(Study), TypeAdapter(Result)  # built once: it takes longer than to read a file
 
 
 class StoreError(Exception):
@@ -43,13 +44,13 @@ def make(folder: Path) -> None:
 
 
 class Store:
-    """Results on disk below `folder`. Raises StoreError where the folder cannot be made, read or written."""
+    """Results of a case on disk below `folder`. Raises StoreError where it cannot be made, read or written."""
 
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
+    def __init__(self, folder: Path, case: str = "mms") -> None:
+        self.folder, self.case = folder, case
         self.runs = folder / "runs"
 
-    def create(self, study: Study) -> None:
+    def create(self, study: Any) -> None:
         """Make the folder and write study.json; Results already there stay, a broken study.json is not written over."""
         make(self.runs)
         for leftover in self.runs.glob(".*"):  # of a process that was killed while it wrote
@@ -60,13 +61,11 @@ class Store:
             self.study()
         self.write(self.folder / "study.json", json.dumps(asdict(study), indent=1).encode())
 
-    def study(self) -> Study:
-        """The Study of this folder."""
-        path = self.folder / "study.json"
-        study: Study = self._read(path, STUDY)
-        return study
+    def study(self) -> Any:
+        """The study of this folder."""
+        return self._read(self.folder / "study.json", kind(self.case).study)
 
-    def put(self, result: Result, arrays: Arrays) -> None:
+    def put(self, result: Any, arrays: Arrays) -> None:
         """Write arrays, then the Result: the JSON file is what makes a run stored."""
         path = self.runs / result.digest
         buffer = io.BytesIO()
@@ -74,16 +73,13 @@ class Store:
         self.write(path.with_suffix(".npz"), buffer.getvalue())
         self.write(path.with_suffix(".json"), json.dumps(asdict(result), indent=1).encode())
 
-    def get(self, digest: str) -> Result | None:
+    def get(self, digest: str) -> Any:
         """The stored Result of that name, None if the run is still to be done."""
         path = self.runs / f"{digest}.json"
-        if not path.exists():
-            return None
-        result: Result = self._read(path, RESULT)
-        return result
+        return self._read(path, kind(self.case).result) if path.exists() else None
 
     def arrays(self, digest: str) -> Arrays:
-        """The particles of that run at its last step."""
+        """The arrays of that run."""
         path = self.runs / f"{digest}.npz"
         try:
             with path.open("rb") as file, np.load(file, allow_pickle=False) as stored:
@@ -93,10 +89,11 @@ class Store:
                 f"cannot read {path}: {error}; delete it and its .json file to run that run again"
             ) from error
 
-    @staticmethod
-    def _read(path: Path, adapter: TypeAdapter[Any]) -> Any:
+    def _read(self, path: Path, adapter: TypeAdapter[Any]) -> Any:
         try:
             data = json.loads(path.read_bytes())
+            if data.get("format") == FORMAT and data.get("case", data.get("run", {}).get("case", "mms")) != self.case:
+                raise StoreError(f"{path.parent} holds another case than {self.case}; use another --out folder")
             if data.get("format") != FORMAT:
                 raise StoreError(
                     f"{path} has format {data.get('format')}, this version reads {FORMAT}; use another --out folder"

@@ -59,6 +59,14 @@ class Run:
             raise ValueError(f"no run: cells = {self.cells}, ppc = {self.ppc}, courant = {self.courant}")
 
     @property
+    def cost(self) -> float:
+        """Particle updates, up to a factor: what a run takes grows with it."""
+        return self.cells**3 * self.ppc / self.courant
+
+    def __str__(self) -> str:
+        return f"{self.method} {self.cells}² cells, {self.ppc} per cell"
+
+    @property
     def digest(self) -> str:
         """Name of the Result: hash of the parameters and of the sources, 16 hex digits."""
         return _digest(self, sources_digest())

@@ -1,7 +1,7 @@
 """Energy and impulse of a step, term by term, so that a budget is closed without taking any term as the rest.
 
-On the grid w is the velocity before the step, u the one after it, a the acceleration that the particles are given, f the
-force. The step between moves particles, strains them by the gradient of u, and makes w of the next step from u.
+On the grid w is the velocity before the step, u the one after it, a the acceleration that the particles are given, f
+the force. The step between moves particles, strains them by the gradient of u, and makes w of the next step from u.
     forces      dt f . (w + dt a/2)             stress and gravity, less damping
     walls       dt (m a - f) . (w + dt a/2)     what a wall holds; never above zero for walls at rest
     transfer    forces + walls - gain of the particles + dt/2 f . (u_before - w): velocities on their way to and fro
@@ -25,23 +25,26 @@ if TYPE_CHECKING:
 TRANSFER, CONVECTION, WALLS, ON_GRID, IMPULSE, SUMS = 0, 1, 2, 3, 4, 6
 
 
-@kernel(nothing(F1, F2, F2, F1, f8, f8, F1))
-def between_steps(mass, given, after, g, dt, cutoff, sums):
+@kernel(nothing(F1, F2, F2, F2, F1, f8, f8, F1))
+def between_steps(mass, given, after, undamped, g, dt, cutoff, sums):
     """Adds what the velocities `after` (n,2) of the last step lose until this one to TRANSFER, and half the work of the
-    new inner forces on them to CONVECTION."""
+    new inner forces on them to CONVECTION; keeps the forces in `undamped` (n,2)."""
     for i in range(mass.shape[0]):
         if mass[i] > cutoff:
             for a in range(2):
                 f = given[i, 2 + a]
+                undamped[i, a] = f
                 sums[TRANSFER] += 0.5 * dt * f * (after[i, a] - given[i, a] / mass[i])
                 sums[CONVECTION] += 0.5 * dt * (f - mass[i] * g[a]) * after[i, a]
 
 
-@kernel(nothing(F1, F2, F2, F2, flag[:, ::1], F1, f8, f8, F1))
-def in_step(mass, given, motion, undamped, held, g, dt, cutoff, sums):
-    """Adds all that the step does on the grid, and writes the kinetic energy after it to ON_GRID."""
+@kernel(nothing(F1, F2, F2, F2, F2, flag[:, ::1], F1, f8, f8, F1))
+def in_step(mass, given, motion, undamped, after, held, g, dt, cutoff, sums):
+    """Adds all that the step does on the grid, writes the kinetic energy after it to ON_GRID, keeps u in `after`."""
     sums[ON_GRID] = 0.0
     for i in range(mass.shape[0]):
+        for a in range(2):
+            after[i, a] = motion[i, a]
         if mass[i] > cutoff:
             for a in range(2):
                 u = motion[i, a]
@@ -82,15 +85,18 @@ class Budget:
     def begin(self, model: "Model") -> None:
         """With the forces of each step, before they are damped."""
         g = model.grid
-        if len(self.after):
-            between_steps(g.mass, g.given, self.after, self.gravity, model.dt, model.cutoff, self.sums)
-        self.undamped = g.force.copy()
+        if not len(self.after):
+            self.after, self.undamped = np.zeros((len(g.mass), 2)), np.zeros((len(g.mass), 2))
+        dt = model.dt if model.steps else 0.0  # nothing lies between the start and the first step
+        between_steps(g.mass, g.given, self.after, self.undamped, self.gravity, dt, model.cutoff, self.sums)
 
     def end(self, model: "Model") -> None:
         """After the equation of motion of each step."""
-        g, held = model.grid, model.walls.held
-        in_step(g.mass, g.given, g.motion, self.undamped, held, self.gravity, model.dt, model.cutoff, self.sums)
-        self.after = g.velocity.copy()
+        g = model.grid
+        in_step(
+            g.mass, g.given, g.motion, self.undamped, self.after, model.walls.held, self.gravity, model.dt,
+            model.cutoff, self.sums,
+        )  # fmt: skip
 
     def terms(self, model: "Model") -> dict[str, float]:
         """Energies after a step: kinetic, on_grid, potential, work, damping, walls, transfer, convection.

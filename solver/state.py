@@ -103,6 +103,12 @@ class Particles:
     def __len__(self) -> int:
         return len(self.X)
 
+    @property
+    def J(self) -> Floats:
+        """det F (P,)."""
+        F: Floats = self.F
+        return F[:, 0, 0] * F[:, 1, 1] - F[:, 0, 1] * F[:, 1, 0]
+
     def reorder(self, order: Ints) -> None:
         """Permute the rows of every array."""
         for item in fields(self):

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
-from cases.study import Result, Run
+from cases.runner import Result, Run
 
 
 class Silent:
@@ -33,9 +33,8 @@ class Bar(Silent):
 
     def done(self, result: Result) -> None:
         """Name the run that has ended."""
-        run = result.run
         self.finished += 1
-        last = f"{run.method} {run.cells}² cells, {run.ppc} per cell: {result.status}"
+        last = f"{result.run}: {result.status}"
         self.bar.update(self.task, runs=self.finished, last=last)
         self.hear([(result.digest, 1.0)])
 

@@ -135,8 +135,9 @@ class Cpdi(Basis):
     @staticmethod
     def cut(F: Floats, domain: Floats, dx: float) -> NDArray[np.bool_]:
         """Whether a half diagonal is longer than the limit (P,)."""
-        r = np.einsum("pab,psb->psa", F, domain[:, :4].reshape(-1, 2, 2))
-        longest = np.maximum(np.linalg.norm(r[:, 0] + r[:, 1], axis=1), np.linalg.norm(r[:, 0] - r[:, 1], axis=1))
+        r0 = domain[:, :4].reshape(-1, 2, 2)
+        one, other = r0[:, 0] + r0[:, 1], r0[:, 0] - r0[:, 1]
+        longest = np.maximum(*(np.hypot(*(F[:, :, 0].T * d[:, 0] + F[:, :, 1].T * d[:, 1])) for d in (one, other)))
         too_long: NDArray[np.bool_] = longest > (dx * domain[:, 4] if domain.shape[1] == 5 else inf)
         return too_long
 

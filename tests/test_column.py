@@ -1,0 +1,194 @@
+"""The collapsing column: invariants of the run, what keeps it alive, and what its measures say of known shapes."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from cases.column_measure import connected, quantile, surface
+from cases.column_run import ColumnRun
+from cases.column_start import oedometric
+from cases.library.column import Gate, execute, gravity, setup
+from solver.material.mohr_coulomb import MohrCoulomb
+from solver.material.ubcsand import Ubcsand
+from solver.step import advance
+
+SMALL = ColumnRun(cells=4, ppc=4, duration=0.3)
+
+
+def went(run: ColumnRun, steps: int) -> Any:
+    """The model after so many steps."""
+    model, _ = setup(run)
+    for _ in range(steps):
+        advance(model, gravity)
+    return model
+
+
+@pytest.fixture(scope="module")
+def done() -> Any:
+    return execute(SMALL)
+
+
+def test_budgets_close(done: Any) -> None:
+    """Energy, momentum and mass; each term has the sign it must have."""
+    result, arrays = done
+    assert (result.status, result.failure) == ("finished", None)
+    first = float(arrays["curve_potential"][0])
+    assert result.values["unbalanced"] < 2e-3
+    assert result.values["most_momentum_lost"] < 1e-9
+    assert (arrays["curve_mass"] == arrays["curve_mass"][0]).all()
+    assert arrays["curve_potential"][-1] < 0.5 * first
+    assert arrays["curve_kinetic"].max() > 0.1 * first
+    assert arrays["curve_walls"][-1] < 0 < arrays["curve_plastic"][-1]
+    assert (np.diff(arrays["curve_plastic"]) > -1e-3 * first).all()
+    assert 0 < arrays["curve_elastic"].max() < 0.02 * first
+
+
+def test_a_term_left_out_is_seen(done: Any) -> None:
+    """Each of the larger terms of the budget is needed for it to close."""
+    _, arrays = done
+    first = float(arrays["curve_potential"][0])
+    for name in ("kinetic", "work", "walls", "transfer"):
+        assert np.abs(arrays["curve_residual"] - arrays[f"curve_{name}"]).max() > 4e-3 * first
+
+
+def test_the_collapse(done: Any) -> None:
+    """It runs out, monotonously in its front, and into a heap that falls off from the wall."""
+    result, arrays = done
+    front, profile = arrays["curve_front_99"], arrays["curve_profile"]
+    assert np.diff(front).min() > -1e-3
+    assert front[-1] > 3 * result.run.width
+    assert profile[0, 0] == pytest.approx(result.run.height, rel=0.05)
+    assert result.values["front_99"] <= result.values["front_999"]
+    assert 0 < result.values["most_void"] < 1
+    volume = profile[-1].sum() * result.run.width / 7
+    assert 1.0 < volume / (result.run.width * result.run.height) < 1.8  # it dilates
+
+
+def test_what_is_kept(done: Any) -> None:
+    result, arrays = done
+    assert arrays["frame_x"].shape[1:] == (result.particles, 2)
+    assert arrays["snapshot_t"][[0, -1]] == pytest.approx([0, SMALL.duration])
+    count = len(arrays["snapshot_t"])
+    for name, shape in {"F": (2, 2), "sigma": (4,), "corners": (4, 2), "void": ()}.items():
+        assert arrays[f"snapshot_{name}"].shape == (count, result.particles, *shape)
+    np.testing.assert_array_equal(arrays["snapshot_x"][-1], arrays["frame_x"][-1])
+    corners = arrays["snapshot_corners"][0]
+    np.testing.assert_allclose(corners.mean(axis=1), arrays["snapshot_x"][0], atol=1e-6)
+
+
+def test_density_and_modulus_scaled_together() -> None:
+    """Friction without cohesion has no stress of its own: the same places, to round-off, and scaled stresses."""
+    one, other = (went(replace(SMALL, law=f"mohr_coulomb:void=1,{p}"), 300) for p in ("E=840e3", "E=420e3,rho0=1325"))
+    np.testing.assert_allclose(other.particles.x, one.particles.x, atol=1e-9)
+    np.testing.assert_allclose(2 * other.particles.sigma, one.particles.sigma, atol=1e-6)
+    moved = np.abs(one.particles.x - one.particles.X).max()
+    assert moved > 1e-2
+    stiffer = went(replace(SMALL, law="mohr_coulomb:void=1,E=1680e3,rho0=2650", courant=0.4 * 2**0.5), 300)
+    assert np.abs(stiffer.particles.x - one.particles.x).max() > 1e-4  # E alone is not without effect
+
+
+def test_a_mirrored_column_is_the_mirror_image() -> None:
+    one, other = (went(replace(SMALL, mirror=m), 300) for m in (False, True))
+    end = other.grid.upper[0]
+    x = other.particles.in_initial_order("x")
+    per_column = 7 * 4 * 2
+    image = x.reshape(-1, per_column, 2)[::-1].reshape(-1, 2) * [-1, 1] + [end, 0]
+    np.testing.assert_allclose(image, one.particles.in_initial_order("x"), atol=1e-9)
+    assert np.abs(one.particles.x - one.particles.X).max() > 1e-2
+
+
+@pytest.mark.parametrize(
+    ("change", "gone"),
+    [
+        ({"method": "mpm"}, 0.9),
+        ({"method": "gimp"}, 0.9),
+        ({"law": "drucker_prager:void=1"}, 0.9),
+        ({"law": "ubcsand:void=1", "start": "oedometric", "duration": 0.15}, 0.1),
+        ({"start": "k0"}, 0.9),
+        ({"damping": 0.05}, 0.9),
+        ({"smoothing": "deviatoric", "left": "fixed"}, 0.9),
+        ({"gate": 1.0}, 0.5),
+    ],
+    ids=str,
+)
+def test_what_else_there_is(change: Any, gone: float) -> None:
+    """It finishes, falls, and its budget closes."""
+    result, arrays = execute(replace(SMALL, **{"duration": 0.25, **change}))
+    assert result.failure is None
+    assert result.values["unbalanced"] < 5e-3
+    assert arrays["curve_front_99"][-1] > (1 + gone) * SMALL.width
+    assert (result.values["damping"] > 0) == ("damping" in change)
+
+
+def test_without_what_keeps_it_alive() -> None:
+    """The plain scheme is lost; its failure is a result."""
+    result, _ = execute(replace(SMALL, method="cpdi", law="mohr_coulomb", deformation="linear", duration=0.6))
+    assert result.status == "failed"
+    assert result.failure
+    assert 0 < result.failure.step < 0.6 / result.dt
+    assert result.values["t"] < 0.6
+
+
+def test_the_stress_at_first() -> None:
+    """At rest: vertical stress of the weight above, K0 of Jaky; oedometric: admissible and of the law's own path."""
+    model, _ = setup(replace(SMALL, start="k0"))
+    p = model.particles
+    weight = 2650 * 10 * (SMALL.height - p.x[:, 1])
+    np.testing.assert_allclose(p.sigma[:, 1], -weight)
+    np.testing.assert_allclose(p.sigma[:, 0] / p.sigma[:, 1], 1 - np.sin(np.radians(31)))
+    sigma, history = (rows[1:] for rows in oedometric(Ubcsand(), 5e3))  # the first is free of stress
+    K0 = sigma[:, 0] / sigma[:, 1]
+    assert np.interp(5e3, -sigma[:, 1], K0) == pytest.approx(0.523, abs=2e-3)
+    assert np.interp(5e3, -sigma[:, 1], history[:, 0]) == pytest.approx(0.313, abs=2e-3)
+    sigma, _ = oedometric(MohrCoulomb(), 5e3)
+    more = sigma[-1] - sigma[1]  # beyond the isotropic stress that it starts from
+    assert more[0] / more[1] == pytest.approx(0.3 / 0.7, rel=1e-9)  # elastic
+
+
+def test_a_column_behind_a_closed_gate_stays() -> None:
+    """The gate holds it: a gate that does not move lets nothing through, and one that is gone lets it fall."""
+    shut, gone = (execute(replace(SMALL, gate=gate, duration=0.1, start="k0")) for gate in (1e-9, 1e9))
+    assert shut[1]["curve_front_99"][-1] < 1.01 * SMALL.width < gone[1]["curve_front_99"][-1]
+    model, _ = setup(replace(SMALL, gate=1.0))
+    assert isinstance(model.walls.rule, Gate)  # type: ignore[attr-defined]
+
+
+def test_measures_of_known_shapes() -> None:
+    """A triangle of equal masses with two flyers: its toe, its surface and its percentiles."""
+    grid = np.stack(np.meshgrid(np.arange(0.05, 10, 0.1), np.arange(0.05, 5, 0.1)), axis=-1).reshape(-1, 2)
+    heap = grid[grid[:, 1] < 5 - grid[:, 0] / 2]
+    x = np.vstack([heap, [[11.0, 0.1], [4.0, 4.9]]])
+    m = np.ones(len(x))
+    inside = connected(x, 0.5)
+    assert inside[: len(heap)].all()
+    assert not inside[len(heap) :].any()
+    heights = surface(heap, np.ones(len(heap)), 0.5, 30)
+    np.testing.assert_allclose(heights[:18], 5 - (np.arange(18) + 0.5) / 4, atol=0.2)
+    assert (heights[20:] == 0).all()
+    assert quantile(x[:, 0], m, 0.5) == pytest.approx(10 * (1 - 0.5**0.5), abs=0.06)
+    assert quantile(x[:, 0], m, 1.0) == 11.0
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ({"ppc": 3}, "no square number"),
+        ({"cells": 1}, "must be 2 or more"),
+        ({"duration": 0.0}, "must be above zero"),
+        ({"aspect": 0.3}, "must make whole cells"),
+        ({"start": "wet"}, "must be one of none, k0, oedometric"),
+        ({"left": "rubber"}, "must be one of roller, fixed"),
+        ({"law": "neo_hookean"}, "must have a law in rate form"),
+        ({"smoothing": "rough"}, "no smoothing"),
+        ({"method": "cpdi:limit=0"}, "must be above zero"),
+        ({"damping": 1.5}, "must lie from 0"),
+        ({"deformation": "cubic"}, "choose from linear, exponential"),
+        ({"channel": 1.0}, "must be from 2 to 100"),
+    ],
+    ids=str,
+)
+def test_refusals(change: Any, says: str) -> None:
+    with pytest.raises(ValueError, match=says):
+        setup(replace(SMALL, **change))
