@@ -3,7 +3,9 @@
 Front: the distance from the wall within which 99 or 99.9 % of the mass lies; single particles fly further. Toe: the
 far end of the heap that hangs together with the wall, in squares of a seventh of the width, by sides or corners.
 Height: below it lie 99 % of the mass of the heap next to the wall, in a strip of a seventh of the width; the profile is
-the same for each strip. A seventh on any grid, so that grids can be compared.
+the same for each strip. A seventh on any grid, so that grids can be compared. Crowding: the volume V = J V0 that
+particles keep, over the space in which they are, within the heap. It should be 1; where particles drift closer than
+their det F knows, or apart, it is not, and the heap is smaller, or larger, than its material.
 """
 
 from math import inf, radians, sin
@@ -63,7 +65,9 @@ class Measure:
             "fastest": float(np.hypot(*p.v.T).max()),
             **strength(model),
             **scaled(model),
+            "crowding": crowding(x, p.V0 * p.J, self.strip),
         }
+        row["courant"] = model.dt / model.grid.dx * (wave(model.material, row["largest_s"]) + row["fastest"])
         self.rows.append(row)
         self.profiles.append(profile)
 
@@ -72,6 +76,14 @@ class Measure:
         names = self.rows[0] if self.rows else ()
         columns = {name: np.array([row[name] for row in self.rows]) for name in names}
         return {**columns, "profile": np.array(self.profiles).reshape(len(self.rows), -1)}
+
+
+def wave(law: Any, s: float) -> float:
+    """Speed of the compression wave; of a law that stiffens with s, under the largest s there is."""
+    if not hasattr(law, "moduli"):
+        return float(law.wave_speed())
+    G, K = law.moduli(s)
+    return float(np.sqrt((K + 4 / 3 * G) / law.rho0))
 
 
 def momentum(model: Model) -> Floats:
@@ -108,6 +120,15 @@ def surface(x: Floats, m: Floats, strip: float, strips: int) -> Floats:
         if len(rows):
             heights[k] = quantile(x[rows, 1], m[rows], SHARE)
     return heights
+
+
+def crowding(x: Floats, V: Floats, side: float) -> float:
+    """Volume over space, in squares that have particles and such a square above them; NaN where there are none."""
+    cell = np.maximum(np.floor(x / side + 1e-9).astype(int), 0)
+    volume = np.zeros((cell[:, 0].max() + 1, cell[:, 1].max() + 2))
+    np.add.at(volume, (cell[:, 0], cell[:, 1]), V)
+    within = (volume[:, :-1] > 0) & (volume[:, 1:] > 0)
+    return float(volume[:, :-1][within].mean() / side**2) if within.any() else float("nan")
 
 
 def split(model: Model, work: float) -> dict[str, float]:
@@ -168,10 +189,11 @@ def final(run: ColumnRun, curves: dict[str, Floats]) -> dict[str, float]:
     """Numbers of a run: those at its end, the largest of some, and when it came to rest.
 
     `rest`: since when the kinetic energy of the grid is below 1e-4 of the potential energy there was; inf if it is not.
+    `area`: under the final profile, over that of the column: 1 and what it has dilated, or less where it has shrunk.
     `creep`: how much the height still changed in the last fifth of the time, as a share of it.
     """
     values = {name: float(column[-1]) for name, column in curves.items() if name != "profile"}
-    for name in ("outside", "beyond", "largest_s", "cut", "void", "fastest", "momentum_lost", "largest_J"):
+    for name in ("outside", "beyond", "largest_s", "cut", "void", "fastest", "momentum_lost", "largest_J", "courant"):
         values[f"most_{name}"] = float(curves[name].max())
     first = float(curves["potential"][0])
     moving = np.flatnonzero(curves["on_grid"] > 1e-4 * first)
@@ -181,4 +203,6 @@ def final(run: ColumnRun, curves: dict[str, Floats]) -> dict[str, float]:
     values["creep"] = float(height[t >= 0.8 * t[-1]][0] - height[-1]) / max(float(height[-1]), 1e-300)
     values["unbalanced"] = float(np.abs(curves["residual"]).max()) / first
     values["run_out"] = values["front_99"] / run.width - 1
+    strip = run.width / STRIPS
+    values["area"] = float(curves["profile"][-1].sum()) * strip / (run.width * run.height)
     return values

@@ -31,18 +31,22 @@ class ColumnRun:
     `damping`: its alpha; `courant`: dt c/dx, c the law's compression wave; `duration` and `gate` (speed at which the
     gate is lifted, inf: gone at once) in SI units; `start`: initial stress; `left`: the wall at x = 0; `stops`: see
     solver.boundary.Walls; `offset` shifts the particles in their cells, by shares of their spacing; `mirror` puts the
-    wall to the right. Raises ValueError with one line for what no column has.
+    wall to the right. What keeps the column alive: `limit` of the half diagonals of CPDI domains, in cells (inf: none;
+    never below what a particle begins with), `void`-strain memory of laws that have one and no cohesion, and the
+    exponential `deformation`. Raises ValueError with one line for what no column has.
     """
 
-    method: str = "cpdi:limit=1"
+    method: str = "cpdi"
     cells: int = 14
     ppc: int = 9
-    law: str = "mohr_coulomb:void=1"
+    law: str = "mohr_coulomb"
     damping: float = 0.0
     damping_kind: str = "local"
     smoothing: str = "none"
     transfer: str = "flip"
     deformation: str = "exponential"
+    limit: float = 0.5
+    void: bool = True
     courant: float = 0.4
     duration: float = 1.4
     start: Start = "none"
@@ -61,8 +65,8 @@ class ColumnRun:
         per_side(self.ppc)
         if self.cells < 2:
             raise ValueError(f"cells = {self.cells} of the width must be 2 or more")
-        for name in ("courant", "duration", "gate", "width", "aspect", "g"):
-            if not getattr(self, name) > 0 or (getattr(self, name) == inf and name != "gate"):
+        for name in ("courant", "duration", "gate", "limit", "width", "aspect", "g"):
+            if not getattr(self, name) > 0 or (getattr(self, name) == inf and name not in ("gate", "limit")):
                 raise ValueError(f"{name} = {getattr(self, name)} must be above zero and finite")
         if abs(self.aspect * self.cells - round(self.aspect * self.cells)) > 1e-9:
             raise ValueError(f"aspect = {self.aspect} must make whole cells of the height: {self.cells} are the width")
@@ -126,14 +130,17 @@ class ColumnResult:
 
 @dataclass(frozen=True)
 class ColumnStudy:
-    """The runs of a sweep; `axes`: names of the fields that it varies; `words`: what the study is for, by its file."""
+    """The runs of a sweep; `axes`: names of the fields that it varies; `words`: what the study is for, by its file.
+
+    `finish`: how many runs must come to their end, declared before any runs; a study of what fails asks for fewer.
+    """
 
     name: str
     title: str
     command: str
     runs: tuple[ColumnRun, ...]
     axes: tuple[str, ...] = ()
-    figure: str = ""
     words: tuple[str, ...] = ()
+    finish: int = 0
     case: str = "column"
     format: int = FORMAT

@@ -12,11 +12,16 @@ STEP = 1e-6  # of strain
 
 
 def stress(particles: Particles, law: Any, start: str, surface: float, g: float) -> None:
-    """Write particles.sigma, and the history that an oedometric path leaves, by the depth below `surface`."""
+    """Write particles.sigma, and the history that an oedometric path leaves, by the depth below `surface`.
+
+    Raises ValueError for a law without an angle of friction, where there must be one.
+    """
     if start == "none":
         return
     load = law.rho0 * g * (surface - particles.x[:, 1])
     if start == "k0":
+        if not (hasattr(law, "phi") or hasattr(law, "phi_f")):
+            raise ValueError("start = k0 must have a law with an angle of friction")
         K0 = 1 - sin(radians(law.phi if hasattr(law, "phi") else law.phi_f))
         particles.sigma[:, :3] = -load[:, None] * [K0, 1.0, K0]
         return

@@ -43,6 +43,15 @@ def make(folder: Path) -> None:
         ) from error
 
 
+def case_of(folder: Path) -> str:
+    """The case of the study that a folder holds; mms where there is nothing that says so."""
+    try:
+        data = json.loads((folder / "study.json").read_bytes())
+        return str(data.get("case", "mms")) if isinstance(data, dict) else "mms"
+    except (OSError, ValueError):
+        return "mms"
+
+
 class Store:
     """Results of a case on disk below `folder`. Raises StoreError where it cannot be made, read or written."""
 

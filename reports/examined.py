@@ -8,6 +8,7 @@ import pandas as pd
 
 from cases.checks import Check, Examination
 from cases.store import Store, StoreError
+from reports.film import Film
 from reports.page import Add, Image, adder, template
 from reports.show import Table
 
@@ -16,13 +17,15 @@ WAYS = {"relative": "± {} of it", "absolute": "± {}", "at least": "or more", "
 
 @dataclass(frozen=True)
 class Section:
-    """A part of the page: paragraphs, figures with their captions, tables."""
+    """A part of the page: paragraphs, figures with their captions, tables, animations."""
 
     key: str
     heading: str
     text: Sequence[str] = ()
     figures: Sequence[tuple[Image, str]] = ()
     tables: Sequence[Table] = ()
+    films: Sequence[Film] = ()
+    wide: bool = False  # a single figure as wide as the page
 
 
 Sections = Callable[[Examination, Add], Sequence[Section]]

@@ -7,13 +7,17 @@ from solver._jit import kernel
 
 @kernel(inline=True)
 def slip(t, s, G, stiff, D, a, k, eta_m):
-    """Plastic shear strain L > 0 with t - G L = eta(L) (s - stiff D L): the positive root, by the stable formula."""
+    """Plastic shear strain L > 0 with t - G L = eta(L) (s - stiff D L): the positive root, by the stable formula.
+
+    -1 where there is none: the hyperbola passes by, and what is met is its end, the strength.
+    """
     q = eta_m / (1.0 - a * eta_m)
     open_ = 1.0 + a * q
     A = k * (stiff * D - G * a)
     B = k * (a * t - s) + q * stiff * D - open_ * G
     C = open_ * t - q * s
-    return 2.0 * C / (np.sqrt(B * B - 4.0 * A * C) - B)
+    root = B * B - 4.0 * A * C
+    return -1.0 if root < 0.0 else 2.0 * C / (np.sqrt(root) - B)  # NaN goes on
 
 
 @kernel(inline=True)
@@ -29,7 +33,10 @@ def onset(eta, x0, y0, s0, x1, y1, s1):
 
 
 @kernel(inline=True)
-def unit(x, y):
-    """A vector's direction."""
-    per = 1.0 / np.sqrt(x * x + y * y)
+def unit(x, y, ex, ey):
+    """A vector's direction; (ex, ey) where nothing is left of it: under next to no stress t slips to the last bit."""
+    square = x * x + y * y
+    if square == 0.0:
+        return ex, ey
+    per = 1.0 / np.sqrt(square)
     return x * per, y * per

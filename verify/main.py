@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from verify.audit import audit
+from verify.column import column
 from verify.expectations import expectations
 from verify.graded import graded
 from verify.list import list_plugins
@@ -17,6 +18,7 @@ from verify.methods import methods
 from verify.mms import mms
 from verify.objectivity import objectivity
 from verify.report import report
+from verify.sweep import sweep
 
 USAGE, STOPPED = 2, 130
 
@@ -28,6 +30,8 @@ app.command("audit")(audit)
 app.command("expectations")(expectations)
 app.command("material")(material)
 app.command("objectivity")(objectivity)
+app.command("column")(column)
+app.command("sweep")(sweep)
 app.command("list")(list_plugins)
 app.command("report")(report)
 

@@ -23,9 +23,22 @@ def report(
         chosen = integers(field, "--field")
         if len(chosen) != 2 or min(chosen) < 1:
             raise ValueError(f"--field {field!r} is no run; write cells,particles per cell, such as 64,4")
-        page = examined(folder) if (folder / "examination.json").exists() else study(folder, *chosen)
+        page = made(folder, *chosen)
     with printing():
         typer.echo(f"report: {page}")
+
+
+def made(folder: Path, cells: int, ppc: int) -> Path:
+    """The page of whatever the folder holds."""
+    if (folder / "examination.json").exists():
+        return examined(folder)
+    from cases.store import case_of
+
+    if case_of(folder) == "column":
+        from reports.column_page import page
+
+        return page(folder, vtk=(folder / "vtk").exists())[1]
+    return study(folder, cells, ppc)
 
 
 def study(folder: Path, cells: int, ppc: int) -> Path:

@@ -9,13 +9,14 @@ The paper leaves open, and this is our choice, each a parameter of ColumnRun:
     start    the gate is gone at once
     end      a wall at the end of the channel, 18 widths away, and none above
 A cohesionless column of CPDI particles does not survive the plain scheme. What keeps it alive: the exponential update
-of F (Scheme.deformation), domains no longer than a cell (cpdi:limit=1) and void-strain memory (void=1 of the law).
+of F (Scheme.deformation), domains no longer than a cell (solver/basis/cpdi.py) and void-strain memory of the law
+(solver/voids.py).
 """
 
 import time
 from collections.abc import Callable
-from dataclasses import asdict
-from math import ceil, inf
+from dataclasses import asdict, replace
+from math import ceil, inf, sqrt
 from typing import Any
 
 import numpy as np
@@ -42,7 +43,7 @@ DRAWN = 20_000  # particles of a frame
 
 def setup(run: ColumnRun) -> tuple[Model, int]:
     """The column before it moves, and the number of steps. Raises ValueError for what does not fit together."""
-    law, basis = law_of(run), create(METHODS, run.method)
+    law, basis = law_of(run), basis_of(run)
     dx = run.width / run.cells
     across, up = round(run.channel * run.cells), ceil((run.aspect + 1) * run.cells)
     grid = Grid(dx, np.zeros(2), dx * np.array([across, up]))
@@ -63,12 +64,26 @@ def setup(run: ColumnRun) -> tuple[Model, int]:
     return model, steps
 
 
+def check(run: ColumnRun) -> None:
+    """Raises ValueError for what no column can have: by setting up a small one."""
+    setup(replace(run, cells=2, aspect=7.0))
+
+
 def law_of(run: ColumnRun) -> Any:
-    """The law. Raises ValueError for one that the column cannot have."""
+    """The law, with void-strain memory where it has one. Raises ValueError for one that the column cannot have."""
     law = create(MATERIALS, run.law)
     if not isinstance(law, RateLaw):
         raise ValueError(f"the column must have a law in rate form, with a memory of its path, not {run.law}")
+    if run.void and hasattr(law, "void") and not law.c:  # type: ignore[attr-defined]
+        law = replace(law, void=1.0)  # type: ignore[call-arg]
     return law
+
+
+def basis_of(run: ColumnRun) -> Any:
+    """The basis, with the limit of the run unless it has its own; no domain is cut before it is stretched."""
+    basis = create(METHODS, run.method)
+    own = "limit" in run.method or not hasattr(basis, "limit")
+    return basis if own else replace(basis, limit=max(run.limit, sqrt(0.5 / run.ppc) * (1 + 1e-9)))
 
 
 def walls(run: ColumnRun, grid: Grid) -> Walls:

@@ -110,7 +110,7 @@ def respond(constants, sigma, de, history):
                 eta = q / (1.0 + a * q)
                 q = first + 0.5 * k * L
                 eta_mid = (memory + 4.0 * q / (1.0 + a * q) + eta) / 6.0  # mean over the slip, by Simpson's rule
-                if eta > eta_f:
+                if eta > eta_f or L < 0.0:
                     eta = eta_f
                     eta_mid = eta_f
                     D = eta_cv - eta_f
@@ -118,9 +118,9 @@ def respond(constants, sigma, de, history):
                 s = trial - stiff * D * L
                 nzz += lam * D * L
                 ends = eta
-                nx, ny = unit(half - G * L * mx, nxy - G * L * my)
+                nx, ny = unit(half - G * L * mx, nxy - G * L * my, mx, my)
                 fit = eta * (s + shift)
-                mx, my = unit(x_on + fit * nx, y_on + fit * ny)
+                mx, my = unit(x_on + fit * nx, y_on + fit * ny, nx, ny)
             before = s_mid
             s_mid = 0.5 * (start + s)
             if L == 0.0 and abs(s_mid - before) <= SETTLED * middle:

@@ -1,0 +1,110 @@
+"""More parts of the column's page: solution verification, pictures and films, what keeps the column alive."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from cases.column_exam import Collapse, scatter
+from cases.column_run import ColumnResult, ColumnRun
+from cases.store import Store
+from reports.examined import Section
+from reports.figures import column as draw
+from reports.film import EACH, MOST, film
+from reports.page import Add
+from reports.show import Table
+from reports.words import DASH, percent
+
+FILMS = 8  # of a page
+SET_UP = (
+    "The paper's Figure 3: the column at its wall (thick), before it is released; right, its free foot with the cells "
+    "of the grid, the domains of the particles in layers, and their centres."
+)
+
+
+def refinement(collapse: Collapse, add: Add) -> Section:
+    """Richardson extrapolation where levels are refined, scatter where particles are shifted."""
+    figures, rows = [], []
+    heads = ("axis", *(("runs with",) if any(one.runs for one in collapse.refined) else ()))
+    for place, (axis, runs) in enumerate(dict.fromkeys((one.axis, one.runs) for one in collapse.refined)):
+        series = [one for one in collapse.refined if (one.axis, one.runs) == (axis, runs)]
+        image = add(f"refined_{place}", draw.refined(series, f"{axis}, finer to the right"), f"Refinement in {axis}.")
+        figures.append(
+            (image, f"Refinement in {axis}{f', {runs}' if runs else ''}: each quantity over its finest value.")
+        )
+        for one in series:
+            spread = ", ".join(f"{value:.4f}" for _, value in reversed(one.levels))
+            rows.append((axis, *((runs,) if len(heads) > 1 else ()), one.quantity, spread, *extrapolated(one.found[0])))
+    tables = []
+    if rows:
+        head = (*heads, "quantity", "coarse to fine [m]", "finest three", "order", "limit", "uncertainty [m]")
+        tables.append(Table("Richardson extrapolation and grid convergence index", head, tuple(rows), texts=head[:5]))
+    moved = scatter(collapse.ran, collapse.study.axes)
+    if moved:
+        head = ("quantity", "runs with", "runs", "mean [m]", "standard deviation [mm]", "range [mm]", "of the mean")
+        tables.append(Table("Scatter over where the particles lie in their cells at first", head, tuple(
+            (name, words or DASH, str(n), f"{mean:.4f}", f"{1e3 * deviation:.1f}", f"{1e3 * reach:.1f}",
+             percent(deviation / mean))
+            for words, name, n, mean, deviation, reach in moved), texts=("runs with",)))  # fmt: skip
+    text = (
+        "There is no exact solution. Where three levels approach a limit from one side, the order is observed, the "
+        "limit is extrapolated and the uncertainty is 1.25 times the grid convergence index. Where values go to and "
+        "fro, or settle at no order of a half or more, nothing converges on these levels, and the uncertainty is half "
+        "the range of the three values: no bound."
+    )
+    return Section("refinement", "Solution verification", [text], figures, tables)
+
+
+def extrapolated(found: Any) -> tuple[str, ...]:
+    """Of the finest three levels, as text."""
+    limits = (f"{found.order:.2f}", f"{found.limit:.4f}") if found.kind == "converges" else (DASH, DASH)
+    return (found.kind, *limits, f"{found.uncertainty:.4f}")
+
+
+def set_up(store: Store, add: Add, run: ColumnRun, result: ColumnResult) -> Section:
+    """The paper's Figure 3."""
+    arrays = store.arrays(result.digest)
+    x, corners = draw.away(run, arrays["snapshot_x"][0]), arrays.get("snapshot_corners")
+    figure = draw.set_up(run, x, None if corners is None else draw.away(run, corners[0]))
+    return Section(
+        "setup", "The set-up", figures=[(add("set_up", figure, "The column before it is released."), SET_UP)]
+    )
+
+
+def films(collapse: Collapse, store: Store, add: Add, ran: Sequence[tuple[ColumnRun, ColumnResult]]) -> Section:
+    """Snapshots of the last run, and animations of the first few."""
+    run, result = ran[-1]
+    image = add("snapshots", draw.snapshots(run, store.arrays(result.digest)), "Layers of sand at a few times.")
+    caption = f"{collapse.label(run)}: the domains of the particles, in layers by the height at which they began."
+    shown = ran[:FILMS]
+    most, wide = min(EACH, MOST // len(shown)), 1.02 * max(one.values.get("front_999", run.width) for _, one in shown)
+    reels = [film(run, store.arrays(one.digest), collapse.label(run), wide, most) for run, one in shown]
+    return Section("pictures", "The collapse", figures=[(image, caption)], films=reels, wide=True)
+
+
+def alive(collapse: Collapse) -> Section:
+    """What scaling, void strain and smoothing do to the runs, failed ones too."""
+    head = ("run", "limited domains", "parted", "void strain", "det F", "crowding", "outside the cone",
+            "worst t/(s sin φ)", "largest s [kPa]", "fastest particle [m/s]", "Courant number", "steps", "CPU [s]",
+            "million updates a second")  # fmt: skip
+    rows = []
+    for run in collapse.study.runs:
+        result = collapse.results.get(run.digest)
+        if result and result.values:
+            v = result.values
+            rows.append((
+                collapse.label(run), percent(v["most_cut"]), percent(v["most_void"]), f"{v['void_strain']:.3g}",
+                f"{v['least_J']:.3g} to {v['most_largest_J']:.3g}", f"{v['crowding']:.2f}", percent(v["most_outside"]),
+                f"{1 + v['most_beyond']:.3g}", f"{v['most_largest_s'] / 1e3:.1f}", f"{v['most_fastest']:.2f}",
+                f"{v['most_courant']:.2f}", str(result.steps), f"{result.cpu_s:.1f}",
+                f"{result.updates / max(result.cpu_s, 1e-9) / 1e6:.1f}"))  # fmt: skip
+    text = (
+        "A cohesionless column of CPDI particles lives by three things, which can be switched off: domains no longer "
+        "than a cell, a memory of void strain, and an update of F that keeps its determinant. The table says how many "
+        "particles they touch at most: the share whose domain is cut, the share that has parted from its neighbours, "
+        "the volume of void per solid at the end, and the extremes of det F. Crowding is the volume that particles "
+        "keep, det F times what they began with, over the space in which they are: it should be 1. Above it the heap "
+        "is too small for its material, which the particles do not notice. It grows as particles are fewer.",
+        "Smoothing p or the deviator alone takes stresses out of the cone of friction: the share of particles that the "
+        "forces see outside it, and the worst ratio among those under more than 1 % of the largest pressure.",
+    )
+    return Section("alive", "What keeps it alive, and what leaves the cone", text, tables=[
+        Table("Largest values over each run", head, tuple(rows), texts=("det F",))])  # fmt: skip

@@ -1,0 +1,124 @@
+"""What the commands of the column do: run what is not stored, judge, make the page, print, say it in the exit code."""
+
+import json
+from dataclasses import asdict, dataclass
+from math import isfinite
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from verify.output import printing
+
+if TYPE_CHECKING:
+    from cases.column_exam import Collapse
+    from cases.column_run import ColumnStudy
+
+VERSION = 1
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """How a study of the column is told."""
+
+    vtk: bool = False
+    json_output: bool = False
+    junit: Path | None = None
+
+
+def conduct(study: "ColumnStudy", folder: Path, jobs: int | None, threads: int, wanted: Wanted) -> int:
+    """Returns the exit code; what is wrong with the input or the store is one line and exit code 2."""
+    from verify.conduct import Settings, compute, usage
+    from verify.examine import CODES
+    from verify.junit import check_junit, write_checks
+
+    with usage():
+        from cases.store import Store
+
+        check_junit(wanted.junit)
+        if jobs is not None and jobs < 1:
+            raise ValueError("--jobs takes whole numbers from 1 on")
+        if threads < 1:
+            raise ValueError("--threads takes whole numbers from 1 on")
+        store = Store(folder, "column")
+        with store.locked():
+            store.create(study)
+            compute(study, store, Settings(folder, jobs, threads))  # type: ignore[arg-type]
+            from reports.column_page import page
+
+            collapse, made = page(folder, wanted.vtk)
+        if wanted.junit:
+            write_checks(wanted.junit, collapse.examination)
+    with printing():
+        if wanted.json_output:
+            typer.echo(document(collapse, made))
+        else:
+            show(collapse, made)
+    return CODES[collapse.examination.outcome]
+
+
+def document(collapse: "Collapse", made: Path) -> str:
+    """One JSON document: runs with their numbers, the paper's sentences, the checks; null for what is not finite."""
+    from verify.examine import told
+
+    examination, results = collapse.examination, collapse.results
+    runs = []
+    for run in collapse.study.runs:
+        result = results.get(run.digest)
+        runs.append({
+            "run": finite(asdict(run)), "status": result.status if result else "not run",
+            "values": finite(result.values) if result else {},
+            "failure": asdict(result.failure) if result and result.failure else None,
+        })  # fmt: skip
+    content = {
+        "version": VERSION,
+        "study": collapse.study.name,
+        "outcome": str(examination.outcome),
+        "lead": examination.lead,
+        "runs": runs,
+        "paper": [asdict(claim) for claim in collapse.claims],
+        "checks": [told(check) for check in examination.checks],
+        "refinement": [finite(asdict(one)) for one in collapse.refined],
+        "report": str(made),
+    }
+    return json.dumps(content, indent=1, allow_nan=False, ensure_ascii=False)
+
+
+def finite(value: Any) -> Any:
+    """The same with None for numbers that JSON has no word for."""
+    if isinstance(value, dict):
+        return {key: finite(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [finite(item) for item in value]
+    return None if isinstance(value, float) and not isfinite(value) else value
+
+
+def show(collapse: "Collapse", made: Path) -> None:
+    """Print the runs, the paper's sentences, and the checks."""
+    from rich.table import Table
+    from rich.text import Text
+
+    from reports.column_page import WORDS, numbers
+    from verify.examine import show as checks
+    from verify.table import Listened
+
+    out = Listened(highlight=False, soft_wrap=False)
+    if not out.is_terminal:
+        out.width = max(out.width, 100)
+    table = Table(box=None, pad_edge=False, header_style="dim")
+    for name in ("run", "front 99 %", "99.9 %", "toe", "height", "rest", "falls", "area", ""):
+        table.add_column(name, justify="left" if name in ("run", "") else "right")
+    for run in collapse.study.runs:
+        table.add_row(collapse.label(run), *numbers(run, collapse.results.get(run.digest)))
+    out.print()
+    out.print(table)
+    out.print(
+        "lengths in m from the wall; rest in sqrt(h0/g); falls: of the height in the last fifth of the time; "
+        "area: of the heap over that of the column"
+    )
+    styles = {True: "bold green", False: "bold yellow", None: "dim"}
+    for claim in collapse.claims:
+        where = f" ({claim.runs})" if claim.runs else ""
+        out.print(Text.assemble("\n", (WORDS[claim.reproduced].upper(), styles[claim.reproduced]),
+                                f"  {claim.says}{where} {claim.found}"))  # fmt: skip
+    checks(collapse.examination, made)
