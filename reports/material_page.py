@@ -51,11 +51,12 @@ def test(examination: Examination, name: str, title: str, add: Add) -> Section:
         if marks
         else {}
     )
+    limit = float(curves[f"limit/{name}"]["tau"][0]) if f"limit/{name}" in curves else None
+    against = draw.stress(curve, exact, x, y, points.get("t", ()) if y == "t" else (), limit)
     images: list[tuple[Image, str]] = [
         (add(f"{name}_path", draw.path(curve, exact, line), f"{title}: stress path."), "Stress path."),
-        (add(f"{name}_stress", draw.stress(curve, exact, x, y, points.get("t", ()) if y == "t" else ()),
-             f"{title}: stress against strain."), "Stress against strain."),
-    ]  # fmt: skip
+        (add(f"{name}_stress", against, f"{title}: stress against strain."), "Stress against strain."),
+    ]
     if np.abs(curve["ev"]).max() > 1e-9:
         volume = draw.volume(curve, exact, x, shear, points.get("ev", ()))
         images.append((add(f"{name}_volume", volume, f"{title}: volume strain."), "Volume strain."))

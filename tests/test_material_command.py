@@ -2,6 +2,7 @@
 
 import json
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,9 +10,11 @@ import pytest
 
 from cases.checks import load
 from cases.element_paths import TESTS
-from cases.material_checks import law_checks
-from cases.material_exam import examine
+from cases.material_checks import law_checks, run
+from cases.material_drawn import limit as limits
+from cases.material_exam import beyond, examine, parameters, study, words
 from cases.records import Outcome
+from reports.figures.element import stress
 from solver.material import mohr_coulomb, ubcsand
 from solver.plugins import available, create
 from verify.main import main
@@ -95,12 +98,92 @@ def test_a_path_of_ones_own_is_shown_and_not_judged(
     words = ("material", "neo_hookean", "--path", str(path), "--steps", "4", "--out", str(tmp_path / "out"))
     code, said, err = verify(monkeypatch, capsys, *words)
     assert (code, err) == (0, "")  # the derivative of the energy is known on any path
-    code, said, err = verify(monkeypatch, capsys, "material", "drucker_prager:c=10", *words[2:])
-    assert (code, err) == (3, "")
-    assert "nothing is judged" in " ".join(said.split())
+    for law in ("drucker_prager:c=10", "ubcsand:c=10"):
+        code, said, err = verify(monkeypatch, capsys, "material", law, *words[2:])
+        assert (code, err) == (3, "")
+        assert "nothing is judged" in " ".join(said.split())
     curves = load(tmp_path / "out").curves["test/path"]
     assert curves["tau"][-1] != 0
     assert np.isfinite(curves["s"]).all()
+
+
+@pytest.mark.parametrize("name", ["mohr_coulomb", "drucker_prager"])
+def test_first_order_is_told_to_be_expected(name: str) -> None:
+    """Where an order is told at all: of paths on which each step is exact there is none."""
+    law, tests = create("solver.material", name), [TESTS["shear_stress"], TESTS["isotropic"]]
+    assert "First order is expected" in examine(name, law, tests, 5e3, 10, "").lead
+    flat = examine(name, law, tests[1:], 5e3, 10, "").lead
+    assert "First order" not in flat
+    assert "1 is exact" in flat
+
+
+def test_second_order_is_not_told_to_be_first() -> None:
+    assert "First order" not in examine("ubcsand", ubcsand.Ubcsand(), QUICK, 5e3, 10, "").lead
+
+
+@pytest.mark.parametrize("name", ["mohr_coulomb", "drucker_prager", "mohr_coulomb:psi=20"])
+def test_the_limit_that_is_drawn_is_the_one_that_is_reached(name: str) -> None:
+    """Davis' ratio times the vertical stress, in the curves of the page."""
+    law = create("solver.material", name)
+    limit = limits(law, 5e3)["limit/shear_stress"]["tau"]
+    end = run(law, "shear_stress", 0.3, 5e3, 400).sigma[-1, 3]
+    assert end == pytest.approx(limit[0], rel=1e-4)
+    drawn = examine(name, law, [TESTS["shear_stress"]], 5e3, 5, "").curves
+    np.testing.assert_array_equal(drawn["limit/shear_stress"]["tau"], limit)
+    figure = stress(drawn["test/shear_stress"], None, "gamma", "tau", (), limit[0])
+    assert [line.get_label() for line in figure.axes[0].lines] == ["at failure (Davis)", "computed"]
+
+
+@pytest.mark.parametrize("name", ["mohr_coulomb:c=10", "drucker_prager:cone=compression", "ubcsand", "hypoelastic"])
+def test_no_limit_is_drawn_where_none_is_known(name: str) -> None:
+    assert not limits(create("solver.material", name), 5e3)
+
+
+def test_parameters_say_what_they_do() -> None:
+    """Of UBCSAND: which have no effect, which are not in the paper, which is our reading."""
+    usual = parameters(ubcsand.Ubcsand(), 5e3, 10)
+    factors = [f"hfac{n}" for n in range(1, 7)]
+    assert [usual[name].partition(" ")[2] for name in factors] == ["(no effect in primary loading)"] * 6
+    assert usual["Rf"].startswith("0.7708770538 (not in the paper's Table 2; ")
+    assert "1.1 N^-0.15" in usual["Rf"]
+    assert usual["reversal"].startswith("0 (1 is our reading")
+    cyclic = parameters(ubcsand.Ubcsand(reversal=1.0), 5e3, 10)
+    told = [cyclic[name].partition(" ")[2] for name in factors]
+    assert told == ["(in the stiffness after a reversal)"] * 2 + ["(no effect)"] * 4
+    assert parameters(create("solver.material", "mohr_coulomb"), 5e3, 10)["phi"] == "31"
+
+
+@pytest.mark.parametrize("reversal", [0.0, 1.0])
+def test_what_is_told_of_the_factors_is_so(reversal: float) -> None:
+    """Cyclic shear with other factors: hfac1 and hfac2 count with reversals, the rest never."""
+
+    def end(**factors: float) -> bytes:
+        law = ubcsand.Ubcsand(reversal=reversal, **factors)
+        found = run(law, "cyclic_shear", 0.02, 5e3, 96)
+        assert not found.failed
+        return found.sigma.tobytes()
+
+    for number in range(1, 7):
+        assert (end(**{f"hfac{number}": 0.5}) != end()) == (reversal == 1 and number <= 2)
+
+
+def test_how_often_zz_is_out_of_range_is_told() -> None:
+    """All of isotropic compression, where zz lags behind; none of shear at constant vertical stress; UBCSAND alone."""
+    law = ubcsand.Ubcsand()
+    notes = examine("ubcsand", law, [TESTS["isotropic"], TESTS["shear_stress"]], 5e3, 10, "").notes
+    assert "outside the range" in notes["Isotropic compression"][-1]
+    assert "in 100 % of the steps" in notes["Isotropic compression"][-1]
+    assert "zz is within the range" in notes["Simple shear at constant vertical stress"][-1]
+    soil = create("solver.material", "mohr_coulomb")
+    assert not [line for line in words(soil, study(soil, TESTS["isotropic"], 5e3, 10)) if "zz" in line]
+
+
+def test_the_share_counts_the_steps() -> None:
+    """Two of three, as the start is no step."""
+    law = ubcsand.Ubcsand()
+    sx, sy, sz, tau = np.array([[1, 3, 5, 0], [1, 3, 0.5, 0], [1, 3, 3.5, 0], [2, 2, 2, 1.0]]).T
+    one = replace(study(law, TESTS["isotropic"], 5e3, 1), curve={"s": sx, "sx": sx, "sy": sy, "sz": sz, "tau": tau})
+    assert " in 66.7 % of the steps" in beyond(law, one)
 
 
 @pytest.mark.parametrize(

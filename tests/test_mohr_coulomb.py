@@ -272,7 +272,8 @@ def test_drained_biaxial_compression() -> None:
 
 def test_a_column_at_rest_stays_elastic() -> None:
     """Uniaxial strain: s_h/s_v = nu/(1 - nu), s_v/s_h below k; with phi below asin(1 - 2 nu) it is not."""
-    law, sigma, history = MohrCoulomb(), np.zeros((1, 4)), np.zeros((1, 2))
+    law, sigma = MohrCoulomb(), np.zeros((1, 4))
+    history = np.zeros((1, len(law.memory)))
     for _ in range(50):
         sigma, history = respond(law, sigma, np.array([[0, -1e-3, 0]]))
         assert not history.any()

@@ -52,6 +52,7 @@ from solver.rates.logarithmic import bend
 from solver.state import Floats
 
 MISS = 0.1  # of the stress: what is missed by so much is seen
+SOILS = [name for name in LAWS if name != "hypoelastic"]
 every_rate = pytest.mark.parametrize("rate", RIGHT)
 every_reading = pytest.mark.parametrize("rate", [*RIGHT, *WRONG])
 
@@ -240,15 +241,20 @@ def miss_of_ongoing(name: str, rate: str, steps: int) -> float:
     return size(seen - turned(stress, 2.0)) / size(stress)
 
 
-@pytest.mark.parametrize(
-    ("name", "rate"), [*(("hypoelastic", rate) for rate in RIGHT), *((name, "green_naghdi") for name in LAWS)]
-)
+# Orders 2.03, 2.31, 1.98 between the steps below, fitted 2.13: the first step of 25 and of 50 turns the axes of stress
+# so far that ubcsand returns radially (its CLOSE), where the two observers differ more.
+LESS_REGULAR = {("ubcsand", "truesdell"): 0.15}
+
+
+@every_rate
+@pytest.mark.parametrize("name", LAWS)
 def test_a_turning_observer_sees_it_at_second_order(name: str, rate: str) -> None:
-    """Not exactly, as D is of the middle of the step: by 1.5e-3 in 25 steps, 5.2e-3 of ubcsand, at order 2."""
+    """Not exactly, as D is of the middle of the step: by 1.5e-3 in 25 steps, 6.4e-3 of ubcsand, at order 2."""
     steps = np.array([25, 50, 100, 200])
     away = [miss_of_ongoing(name, rate, int(count)) for count in steps]
-    assert away[0] < 1e-2
-    assert -np.polyfit(np.log(steps), np.log(away), 1)[0] == pytest.approx(2, abs=0.1)
+    assert away[0] < (7e-3 if name == "ubcsand" else 2e-3)
+    within = LESS_REGULAR.get((name, rate), 0.02)
+    assert -np.polyfit(np.log(steps), np.log(away), 1)[0] == pytest.approx(2, abs=within)
 
 
 CONSTANT = {"printed", "printed_rotation"}  # whom the constant rotation sees
@@ -274,6 +280,20 @@ def test_who_sees_which_misreading(rate: str) -> None:
         assert miss_of_constant("hypoelastic", rate) < 1e-12
     if rate not in STEP:
         assert miss_of_a_step(rate, 1.0) < 1e-13
+
+
+@pytest.mark.parametrize("rate", WRONG)
+@pytest.mark.parametrize("name", SOILS)
+def test_a_soil_shows_every_misreading(name: str, rate: str) -> None:
+    """To an observer who goes on turning, four steps: by 0.23 to 5.9, and by more than any rate (0.06, ubcsand 0.2)."""
+    miss = miss_of_ongoing(name, rate, 4)
+    assert miss > 2 * MISS
+    assert miss > 1.5 * largest_miss_of_a_rate(name)
+
+
+@cache
+def largest_miss_of_a_rate(name: str) -> float:
+    return max(miss_of_ongoing(name, rate, 4) for rate in RIGHT)
 
 
 @every_rate

@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cases.element import Element, State
+from cases.material_checks import excess
 from cases.ubcsand_exact import (
     BIAXIAL,
     CONSTANT_S,
@@ -81,7 +82,7 @@ def test_table_of_constant_s(s: float, eta: float | None, gamma: float, volume: 
     """The closed forms give the table, and 100 steps give the closed forms to 1e-6."""
     wanted = eta or LAW.eta_f
     exact = plastic_shear(LAW, s, wanted), plastic_volume(LAW, s, wanted), elastic_shear(LAW, s, wanted)
-    np.testing.assert_allclose(exact, (gamma, volume, elastic), atol=6e-7)
+    np.testing.assert_allclose(exact, (gamma, volume, elastic), rtol=0, atol=6e-7)
     assert exact[0] == pytest.approx(gamma, abs=6e-9)
     end = at_constant_s(LAW, s, exact[0] + exact[2], 100)
     assert end.history[ETA] == pytest.approx(wanted, abs=1e-6)
@@ -126,13 +127,13 @@ def test_a_linearised_step_is_seen() -> None:
 @pytest.mark.parametrize(("eta", "s1", "gamma", "volume", "e1", "e3"), BIAXIAL)
 def test_drained_biaxial(eta: float, s1: float, gamma: float, volume: float, e1: float, e3: float) -> None:
     """Quadrature gives the table, 100 steps give it to 1e-6, at second order."""
-    np.testing.assert_allclose(biaxial(LAW, 5e3, eta), (gamma, volume), atol=1e-10)
+    np.testing.assert_allclose(biaxial(LAW, 5e3, eta), (gamma, volume), rtol=0, atol=1e-10)
     ends = [drained(LAW, 5e3, e1, steps) for steps in (50, 100, 200)]
     assert ends[1].history[ETA] == pytest.approx(eta, abs=1e-6)
     assert -ends[1].strain[0] == pytest.approx(e3, abs=1e-6)
     assert -ends[1].sigma[1] == pytest.approx(s1, rel=2e-6)
     if eta > 0.1:  # a small one is at the end of the table's digits
-        assert (orders([abs(end.history[ETA] - eta) for end in ends]) > 1.8).all()
+        assert (orders([abs(end.history[ETA] - eta) for end in ends]) > 1.9).all()
 
 
 def test_peak_and_flow_at_failure() -> None:
@@ -219,6 +220,66 @@ def test_never_above_failure_and_never_back(seed: int) -> None:
             assert after.history[ETA] >= before.history[ETA]
 
 
+def plastic_work(law: Ubcsand, before: State, after: State) -> float:
+    """Of one step, without the law's counter: the strain that the elastic moduli of the mean s leave, times the stress.
+
+    zz has no part in it: neither strain nor plastic strain.
+    """
+    middle, change = (before.sigma + after.sigma) / 2, after.sigma - before.sigma
+    G, K = law.moduli(-(middle[0] + middle[1]) / 2)
+    volume, half = (change[0] + change[1]) / 2 / (K + G / 3), (change[0] - change[1]) / (4 * G)
+    elastic = np.array([volume / 2 + half, volume / 2 - half, change[3] / (2 * G)])
+    return float(middle[[0, 1, 3]] * (1, 1, 2) @ (after.strain - before.strain - elastic))
+
+
+def works(law: Ubcsand, seed: int) -> tuple[Floats, Floats, Floats]:
+    """Of a random walk that stays in contact: work of the plastic steps, what the counter says, work of the elastic."""
+    slid, counted, stayed = [], [], []
+    for before, after in pairwise(followed(law, confined(5e3), random_walk(seed))):
+        gone = after.history - before.history
+        assert not gone[DETACHED]
+        (slid if gone[GAMMA] else stayed).append(plastic_work(law, before, after))
+        if gone[GAMMA]:
+            counted.append(gone[WORK])
+    return np.array(slid), np.array(counted), np.array(stayed)
+
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize(
+    "law", [LAW, Ubcsand(Rf=0.9, phi_pt=25.0), Ubcsand(reversal=1.0)], ids=["paper", "soft", "cyclic"]
+)
+def test_plastic_work_is_dissipated(law: Ubcsand, seed: int) -> None:
+    """Every plastic step takes work, to the last; the counter agrees within 4.2 % of the largest step, 2 % in all."""
+    slid, counted, stayed = works(law, seed)
+    assert len(slid) > 100
+    assert slid.min() > 0
+    assert np.abs(stayed).max() < 1e-3 * slid.max()  # what the mean modulus of a finite step leaves
+    assert np.abs(slid - counted).max() < 0.05 * slid.max()
+    assert slid.sum() == pytest.approx(counted.sum(), rel=0.02)
+
+
+class Gaining(Ubcsand):
+    """Flow that makes work: its angle of constant volume has the wrong sign."""
+
+    def constants(self) -> Floats:
+        constants = super().constants()
+        constants[8] *= -1
+        return constants
+
+
+def test_work_that_is_made_would_be_seen() -> None:
+    """And so would a counter that leaves out the volume."""
+    assert (works(Gaining(), 0)[0] < 0).all()
+    shear = []
+    for before, after in pairwise(followed(LAW, confined(5e3), random_walk(0))):
+        if after.history[GAMMA] > before.history[GAMMA]:
+            middle = (before.sigma + after.sigma) / 2
+            t = np.hypot((middle[0] - middle[1]) / 2, middle[3])
+            shear.append(t * (after.history[GAMMA] - before.history[GAMMA]))
+    slid, _, _ = works(LAW, 0)
+    assert np.abs(slid - shear).max() > 0.1 * slid.max()
+
+
 def turned(sigma: Floats, angle: float) -> Floats:
     c, s = np.cos(angle), np.sin(angle)
     xx, yy, zz, xy = sigma
@@ -236,7 +297,7 @@ def test_axes_do_not_matter(angle: float) -> None:
     here, away = followed(LAW, confined(5e3), walk), followed(LAW, confined(5e3), there)
     size = max(float(np.abs(state.sigma).max()) for state in here)
     for a, b in zip(here, away, strict=True):
-        np.testing.assert_allclose(b.sigma, turned(a.sigma, angle), atol=1e-12 * size)
+        np.testing.assert_allclose(b.sigma, turned(a.sigma, angle), rtol=0, atol=1e-12 * size)
 
 
 def test_limit_of_perfect_plasticity() -> None:
@@ -362,6 +423,60 @@ def test_no_state_breaks_it(sigma: tuple[float, ...], de: tuple[float, ...], eta
             assert 0 <= state.history[ETA] <= LAW.eta_f
             assert t <= state.history[ETA] * s + 1e-9 * (s + max(map(abs, sigma))) + 1e-300
             assert state.history[GAMMA] >= 0
+
+
+increments = st.tuples(*[st.floats(-1, 1)] * 3, st.floats(-6, -2))  # a direction, and the exponent of its size
+laws = st.builds(
+    lambda Rf, phi_f, share, reversal: Ubcsand(Rf=Rf, phi_f=phi_f, phi_pt=share * phi_f, reversal=reversal),
+    st.one_of(st.just(0.0), st.floats(0, 0.999)), st.floats(1, 60), st.floats(0.02, 1), st.sampled_from([0.0, 1.0]),
+)  # fmt: skip
+
+
+@settings(max_examples=300, deadline=None, derandomize=True, database=None)
+@given(laws, st.floats(0, 5), st.floats(0, 1), st.floats(0, 7), st.lists(increments, min_size=1, max_size=6))
+def test_no_parameters_break_it(
+    law: Ubcsand, decades: float, share: float, angle: float, path: list[tuple[float, ...]]
+) -> None:
+    """From 1 Pa to 100 kPa, steps up to 1 %: finite, never beyond the strength, and slip only adds up."""
+    s = 10**decades
+    states = followed(law, confined(s, share * s * law.eta_f, angle), np.array([10**p * np.array(d) for *d, p in path]))
+    for before, after in pairwise(states):
+        assert np.isfinite(after.sigma).all()
+        assert np.isfinite(after.history).all()
+        s, t = -(after.sigma[0] + after.sigma[1]) / 2, np.hypot((after.sigma[0] - after.sigma[1]) / 2, after.sigma[3])
+        assert 0 <= after.history[ETA] <= law.eta_f + 1e-12
+        assert t <= s * (after.history[ETA] + 1e-12)
+        assert after.history[GAMMA] >= before.history[GAMMA]
+
+
+@pytest.mark.parametrize(
+    ("law", "s", "de"),
+    [
+        (Ubcsand(Rf=0.0), 24.0, (6.5e-4, 2.5e-4, 1.5e-4)),
+        (Ubcsand(Rf=0.0, reversal=1.0), 24.0, (6.5e-4, 2.5e-4, 1.5e-4)),
+        (Ubcsand(Rf=0.0), 25.0, (-1e-3, 1.5e-3, 1e-3)),
+        (Ubcsand(Rf=0.0), 4e3, (-4e-3, 6e-3, 7e-3)),
+        (Ubcsand(Rf=0.3), 4.143963895658211, (-0.00103527538757433, -0.001993643197832, 0.004324264399348237)),
+        (Ubcsand(Rf=0.3), 29.94328102, (-0.002616265031875291, 0.0014314437212125269, 0.00222191298938422)),
+    ],
+)
+def test_where_the_hyperbola_is_not_met(law: Ubcsand, s: float, de: tuple[float, ...]) -> None:
+    """A step from isotropic stress whose quadratic equation has no root on some pass: finite, within the strength."""
+    end = followed(law, confined(s), np.array([de]))[-1]
+    assert np.isfinite(end.sigma).all()
+    assert excess(law, end.sigma) <= 1e-12
+    assert end.history[GAMMA] >= 0
+
+
+@pytest.mark.parametrize("Rf", [0.0, LAW.Rf])
+def test_next_to_no_stress(Rf: float) -> None:
+    """Squares of the radius are below the smallest float: there is no direction of its own, and nothing is lost."""
+    law, history = Ubcsand(Rf=Rf), np.array([0, 0, 0, 0, 0, 4, 3.2790547e-43])
+    de = np.array([[-2.24121797e-42, 2.03747088e-43, 3.90187514e-63]])
+    end = Element(law).step(State(np.zeros(3), np.zeros(4), history), de)[0]
+    assert np.isfinite(end.sigma).all()
+    assert np.isfinite(end.history).all()
+    assert excess(law, end.sigma) <= 1e-12
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])

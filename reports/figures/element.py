@@ -29,11 +29,20 @@ def path(curve: Curve, exact: Curve | None, strength: tuple[float, float] | None
     return figure
 
 
-def stress(curve: Curve, exact: Curve | None, x: str, y: str, marks: Sequence[tuple[float, float]] = ()) -> Figure:
-    """A stress against a strain; `marks` are of a reference table."""
+def stress(
+    curve: Curve,
+    exact: Curve | None,
+    x: str,
+    y: str,
+    marks: Sequence[tuple[float, float]] = (),
+    limit: float | None = None,
+) -> Figure:
+    """A stress against a strain; `marks` are of a reference table, `limit` is the stress that it comes to."""
     labels = {"t": "radius t", "tau": "shear stress τ", "sy": "vertical stress, compression positive"}
     with rc_context(style.RC):
         figure, axes = _panel(_strain(x, y), labels[y])
+        if limit is not None:
+            axes.axhline(limit, color=style.GREY, linewidth=1.0, linestyle="--", label="at failure (Davis)")
         _both(axes, curve, exact, x, y)
         _marks(axes, marks)
     return figure
