@@ -83,7 +83,7 @@ def checks(study: ColumnStudy, ran: Sequence[Ran], results: Mapping[str, ColumnR
     numbers = {
         "energy budget, residual over initial potential energy": (
             [one.values["unbalanced"] for one in ran], BUDGET, "at most", "every term is measured"),
-        "momentum, particles less gravity and walls, over m sqrt(2 g h)": (
+        "momentum, particles less gravity, walls and damping, over m sqrt(2 g h)": (
             [one.values["most_momentum_lost"] / one.values["mass"] / v for one, v in zip(ran, speed, strict=True)],
             DRIFT, "at most", "conservation"),
         "mass, largest change over all": (

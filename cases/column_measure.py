@@ -3,9 +3,9 @@
 Front: the distance from the wall within which 99 or 99.9 % of the mass lies; single particles fly further. Toe: the
 far end of the heap that hangs together with the wall, in squares of a seventh of the width, by sides or corners.
 Height: below it lie 99 % of the mass of the heap next to the wall, in a strip of a seventh of the width; the profile is
-the same for each strip. A seventh on any grid, so that grids can be compared. Crowding: the volume V = J V0 that
-particles keep, over the space in which they are, within the heap. It should be 1; where particles drift closer than
-their det F knows, or apart, it is not, and the heap is smaller, or larger, than its material.
+the same for each strip. A seventh on any grid, so that grids can be compared, unless cells are wider. Crowding: the
+volume V = J V0 that particles keep, over the space in which they are, within the heap. It should be 1; where particles
+drift closer than their det F knows, or apart, it is not, and the heap is smaller, or larger, than its material.
 """
 
 from math import inf, radians, sin
@@ -29,7 +29,7 @@ class Measure:
 
     def __init__(self, run: ColumnRun, model: Model) -> None:
         self.run, self.end = run, float(model.grid.upper[0])
-        self.strip = run.width / STRIPS
+        self.strip = run.width / min(STRIPS, run.cells)
         self.strips = round(self.end / self.strip)
         self.first: dict[str, float] = {}
         self.rows: list[dict[str, float]] = []
@@ -203,6 +203,6 @@ def final(run: ColumnRun, curves: dict[str, Floats]) -> dict[str, float]:
     values["creep"] = float(height[t >= 0.8 * t[-1]][0] - height[-1]) / max(float(height[-1]), 1e-300)
     values["unbalanced"] = float(np.abs(curves["residual"]).max()) / first
     values["run_out"] = values["front_99"] / run.width - 1
-    strip = run.width / STRIPS
+    strip = run.width / min(STRIPS, run.cells)
     values["area"] = float(curves["profile"][-1].sum()) * strip / (run.width * run.height)
     return values

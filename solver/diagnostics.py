@@ -3,7 +3,7 @@
 On the grid w is the velocity before the step, u the one after it, a the acceleration that the particles are given, f
 the force. The step between moves particles, strains them by the gradient of u, and makes w of the next step from u.
     forces      dt f . (w + dt a/2)             stress and gravity, less damping
-    walls       dt (m a - f) . (w + dt a/2)     what a wall holds; never above zero for walls at rest
+    walls       dt (m a - f) . (w + dt a/2)     what a wall holds
     transfer    forces + walls - gain of the particles + dt/2 f . (u_before - w): velocities on their way to and fro
     convection  work of the stress on the strain of the particles, less that of its force on u: weights that move
 Work of a law is the mean of that of the stress at the start and at the end of a step. With it
@@ -53,6 +53,7 @@ def in_step(mass, given, motion, undamped, after, held, g, dt, cutoff, sums):
                 sums[ON_GRID] += 0.5 * mass[i] * u * u
                 sums[TRANSFER] += dt * given[i, 2 + a] * mean
                 sums[CONVECTION] += 0.5 * dt * (undamped[i, a] - mass[i] * g[a]) * u
+                sums[IMPULSE + a] += dt * (given[i, 2 + a] - undamped[i, a])
                 if held[i, a]:
                     sums[WALLS] += impulse * mean
                     sums[IMPULSE + a] += impulse
@@ -120,7 +121,7 @@ class Budget:
 
     @property
     def impulse(self) -> Floats:
-        """Momentum (2,) that the walls have given."""
+        """Momentum (2,) that walls and damping have given."""
         return self.sums[IMPULSE : IMPULSE + 2]
 
 

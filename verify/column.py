@@ -37,7 +37,7 @@ def column(
         str, typer.Option(help=f"{choices(TRANSFERS)}.", autocompletion=completion(TRANSFERS))
     ] = "flip",
     deformation: Annotated[str, typer.Option(help="Update of F: exponential, or linear as printed.")] = "exponential",
-    limit: Annotated[float, typer.Option(help="Longest half diagonal of a CPDI domain, in cells; inf for none.")] = 1.0,
+    limit: Annotated[float, typer.Option(help="Longest half diagonal of a CPDI domain, in cells; inf for none.")] = 0.5,
     void: Annotated[bool, typer.Option(help="Void-strain memory of the law.")] = True,
     courant: Annotated[float, typer.Option(help="dt c / dx, c the law's compression wave.")] = 0.4,
     duration: Annotated[float, typer.Option(help="Seconds.")] = 1.4,

@@ -1,0 +1,104 @@
+"""The paper's sentences held against made runs: each can be reproduced, and each can fail."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from cases.column_claims import Claim, Ran, beyond, claims, families, told
+from cases.column_experiment import experiment
+from cases.column_run import ColumnRun
+
+T = np.linspace(0, 1.4, 141)
+USUAL = ColumnRun()
+
+
+def ran(front: float = 0.9, height: float = 0.15, kinetic: float = 100.0, potential: float = 80.0, **run: Any) -> Ran:
+    """A run that comes to these, in curves of a simple shape."""
+    curves = {
+        "t": T,
+        "front_99": np.minimum(0.0905 + (front - 0.0905) * T / 0.8, front),
+        "potential": np.maximum(480 - (480 - potential) * T / 0.8, potential),
+        "on_grid": kinetic * np.exp(-(((T - 0.3) / 0.1) ** 2)),
+    }
+    return Ran(replace(USUAL, **run), {"front_99": front, "height": height}, curves)
+
+
+def said(family: list[Ran], axis: str) -> dict[str, Claim]:
+    """Claims by their first five words."""
+    return {" ".join(claim.says.split()[:5]): claim for claim in claims(family, [axis])}
+
+
+def test_the_experiment() -> None:
+    """The bands of the reference values at a = 7, none where nothing was measured."""
+    known = experiment(USUAL)
+    assert known
+    assert known.front == (pytest.approx(0.7197, abs=1e-4), pytest.approx(0.8191, abs=1e-4))
+    assert known.height == (pytest.approx(0.173, abs=5e-4), pytest.approx(0.197, abs=5e-4))
+    assert experiment(replace(USUAL, aspect=2.0)) is None
+    assert (beyond(0.9, (0.7, 0.8)), beyond(0.75, (0.7, 0.8))) == (pytest.approx(0.125), 0.0)
+    assert beyond(0.63, (0.7, 0.8)) == pytest.approx(-0.1)
+
+
+def test_particles() -> None:
+    held = said([ran(0.9, 0.08, ppc=1), ran(0.91, 0.15, ppc=4), ran(0.92, 0.17, ppc=9)], "ppc")
+    assert [claim.reproduced for claim in held.values()] == [True] * 4
+    assert "0.900 m with 1 per cell" in held["Run-out is over-predicted whatever the"].found
+    failed = said([ran(0.7, 0.2, ppc=1), ran(0.91, 0.1, ppc=9)], "ppc")
+    assert [claim.reproduced for claim in failed.values()] == [False] * 4
+    assert said([ran(ppc=4), ran(ppc=9)], "ppc")["With one per cell the"].reproduced is None
+
+
+def test_damping() -> None:
+    family = [ran(0.9, kinetic=100, potential=80), ran(0.84, kinetic=80, potential=90, damping=0.1)]
+    assert [claim.reproduced for claim in said(family, "damping").values()] == [True] * 4
+    family = [ran(0.9, kinetic=100, potential=80), ran(0.95, kinetic=99, potential=120, damping=0.1)]
+    found = said(family, "damping")
+    assert [claim.reproduced for claim in found.values()] == [False] * 4
+    assert "8.3 %" in found["Potential energy is little changed"].found
+    assert "by 1 %" in found["Kinetic energy is markedly changed."].found
+
+
+def test_smoothing() -> None:
+    plain, volume = ran(0.9), ran(1.0, 0.3, smoothing="volumetric")
+    shear = ran(0.85, smoothing="deviatoric:of=rate")
+    assert [c.reproduced for c in said([plain, volume, shear], "smoothing").values()] == [True] * 3
+    volume, shear = ran(0.85, 0.1, smoothing="volumetric"), ran(0.95, smoothing="deviatoric")
+    assert [c.reproduced for c in said([plain, volume, shear], "smoothing").values()] == [False] * 3
+    assert not said([volume, shear], "smoothing")  # nothing to compare them with
+
+
+def test_law() -> None:
+    plain, sand = ran(0.84), ran(0.82, law="ubcsand")
+    assert [claim.reproduced for claim in said([plain, sand], "law").values()] == [True, True, True, None]
+    far = said([plain, ran(1.0, law="ubcsand:Rf=0.9")], "law")
+    assert [claim.reproduced for claim in far.values()] == [False, False, False, None]
+    assert "+19.0 %" in far["UBCSAND and Mohr-Coulomb end close"].found
+    assert not said([plain, ran(law="drucker_prager")], "law")
+
+
+def test_families_differ_in_one_axis_alone() -> None:
+    runs = [ran(ppc=ppc, damping=damping) for ppc in (4, 9) for damping in (0.0, 0.05)]
+    assert [[one.run.ppc for one in family] for family in families(runs, "ppc")] == [[4, 9], [4, 9]]
+    several = claims(runs, ["ppc", "damping"])
+    assert {claim.runs for claim in several} == {"no damping", "5 % damping", "4 per cell", "9 per cell"}
+    assert not claims([ran(ppc=4)], ["ppc"])  # one run is no family
+    assert not claims([replace(one, run=replace(one.run, aspect=1.0)) for one in runs], ["ppc"])
+    assert not claims([], ["ppc"])
+
+
+@pytest.mark.parametrize(
+    ("axis", "value", "words"),
+    [
+        ("cells", 14, "14 cells wide"),
+        ("damping", 0.05, "5 % damping"),
+        ("damping_kind", "objective", "damping kind objective"),
+        ("smoothing", "none", "no smoothing"),
+        ("void", False, "no void"),
+        ("gate", float("inf"), "gate inf"),
+        ("offset", (0.0, 0.25), "offset (0.0, 0.25)"),
+    ],
+)
+def test_words_of_a_value(axis: str, value: Any, words: str) -> None:
+    assert told(axis, value) == words

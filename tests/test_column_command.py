@@ -1,0 +1,220 @@
+"""`verify column` and `verify sweep` from the command line: what is printed, stored, refused, and taken up again."""
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import pytest
+
+from cases.column_exam import look
+from cases.column_run import ColumnRun
+from cases.store import Store
+from reports.column_page import read
+from verify.main import main
+
+SMALL = ("--cells", "2", "--ppc", "4")
+STUDY = """
+title = "A small study"
+words = ["What it is for."]
+[run]
+cells = 2
+[sweep]
+ppc = [4, 9, 16]
+damping = [0.0, 0.1]
+"""
+
+
+class Ended:
+    """How a command ended."""
+
+    def __init__(self, code: int, out: str, err: str) -> None:
+        self.code, self.out, self.err = code, " ".join(out.split()), err
+
+
+@pytest.fixture
+def verify(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> Any:
+    """Runs a command in an empty folder."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(*words: str) -> Ended:
+        monkeypatch.setattr(sys, "argv", ["verify", *words])
+        with pytest.raises(SystemExit) as end:
+            main()
+        return Ended(int(end.value.code or 0), *capsys.readouterr())
+
+    return run
+
+
+@pytest.fixture(scope="module")
+def swept(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A study of six small runs, done."""
+    folder = tmp_path_factory.mktemp("swept")
+    (folder / "small.toml").write_text(STUDY)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(sys, "argv", ["verify", "sweep", str(folder / "small.toml"), "--out", str(folder / "out")])
+        with pytest.raises(SystemExit) as end:
+            main()
+    assert end.value.code == 0
+    return folder / "out"
+
+
+def test_a_column_from_release_to_rest(verify: Any) -> None:
+    """Its numbers, the checks, a page with an animation, and files for ParaView."""
+    ended = verify("column", *SMALL, "--vtk", "--junit", "out.xml")
+    assert (ended.code, ended.err) == (0, "")
+    assert "1 of 1 runs came to their end. The front comes to" in ended.out
+    assert "report: results/column/report.html" in ended.out
+    text = Path("results/column/report.html").read_text()
+    assert text.count('class="film"') == 1
+    assert "Collapse of a granular column" in text
+    store = Store(Path("results/column"), "column")
+    (run,) = store.study().runs
+    assert run == ColumnRun(cells=2, ppc=4)
+    names = sorted(file.name for file in Path("results/column/vtk").iterdir())
+    assert len(names) == 2 * 8 + 2
+    assert f"{run.digest}.pvd" in names
+    assert len(ElementTree.parse("out.xml").getroot()) == 6
+    header = Path("results/column/tables/curves.csv").read_text().partition("\n")[0].split(",")
+    assert {"t", "front_99", "height", "kinetic", "plastic", "residual"} <= set(header)
+
+
+def test_json(verify: Any) -> None:
+    ended = verify("column", *SMALL, "--duration", "0.1", "--json")
+    assert (ended.code, ended.err) == (1, "")  # it does not rest in a tenth of a second
+    told = json.loads(ended.out)
+    assert (told["version"], told["study"], told["outcome"]) == (1, "column", "FAIL")
+    (one,) = told["runs"]
+    assert one["run"]["gate"] is None  # infinite
+    assert one["values"]["rest"] is None
+    assert one["values"]["front_99"] > 0.08
+    assert any(check["outcome"] == "FAIL" and "at the end" in check["name"] for check in told["checks"])
+
+
+def test_what_a_sweep_says(swept: Path) -> None:
+    """Every axis has its sentences and its refinement, in families."""
+    collapse, _ = read(swept)
+    assert len(collapse.ran) == 6
+    assert {claim.runs for claim in collapse.claims} == {
+        "no damping", "10 % damping", "4 per cell", "9 per cell", "16 per cell",
+    }  # fmt: skip
+    assert {(one.axis, one.runs) for one in collapse.refined} == {("ppc", "no damping"), ("ppc", "10 % damping")}
+    assert [name for name, _ in collapse.refined[0].levels] == ["16 per cell", "9 per cell", "4 per cell"]
+    text = (swept / "report.html").read_text()
+    for word in ("A small study", "What it is for.", "reproduced", "Richardson", "not reproduced"):
+        assert word in text
+    assert text.count('class="film"') == 6
+
+
+def test_twice_is_once(verify: Any, swept: Path) -> None:
+    """Nothing is computed again, and the page is the same to the byte."""
+    before = {file: (file.read_bytes(), file.stat().st_mtime_ns) for file in (swept / "runs").iterdir()}
+    page = (swept / "report.html").read_bytes()
+    ended = verify("sweep", str(swept.parent / "small.toml"), "--out", str(swept))
+    assert ended.code == 0
+    assert {file: (file.read_bytes(), file.stat().st_mtime_ns) for file in (swept / "runs").iterdir()} == before
+    assert (swept / "report.html").read_bytes().partition(b"How it was made")[0] == page.partition(b"How it was made")[
+        0
+    ]
+
+
+def test_a_report_is_made_again(verify: Any, swept: Path) -> None:
+    page = (swept / "report.html").read_bytes()
+    (swept / "report.html").unlink()
+    ended = verify("report", str(swept))
+    assert (ended.code, ended.err) == (0, "")
+    assert (swept / "report.html").read_bytes() == page
+
+
+def test_what_is_missing_is_run(verify: Any, swept: Path) -> None:
+    """A study that was stopped goes on: the run that is not there, and no other."""
+    store = Store(swept, "column")
+    run = store.study().runs[2]
+    kept = (swept / "runs" / f"{run.digest}.json").read_text()
+    others = {file: file.stat().st_mtime_ns for file in (swept / "runs").iterdir() if run.digest not in file.name}
+    (swept / "runs" / f"{run.digest}.json").unlink()
+    assert len(look(store.study(), {}, store).ran) == 0
+    collapse, _ = read(swept)
+    assert "1 are still to be done" in collapse.examination.lead
+    assert collapse.examination.outcome == "FAIL"  # the study declares that six come to their end
+    assert verify("sweep", str(swept.parent / "small.toml"), "--out", str(swept)).code == 0
+    again = json.loads((swept / "runs" / f"{run.digest}.json").read_text())
+    assert again["values"] == json.loads(kept)["values"]
+    assert {file: file.stat().st_mtime_ns for file in others} == others
+
+
+def test_a_failed_run_is_a_result(verify: Any, tmp_path: Path) -> None:
+    """What the plain scheme loses is told with its place; the study that says so beforehand passes."""
+    (tmp_path / "plain.toml").write_text(
+        'finish = 1\n[run]\ncells = 4\nppc = 4\n[sweep]\nlimit = [0.5, inf]\n'
+    )  # fmt: skip
+    ended = verify("sweep", "plain.toml")
+    assert (ended.code, ended.err) == (0, "")
+    assert "1 of 2 runs came to their end. 1 could not go on" in ended.out
+    assert "failed at" in ended.out
+    table = Path("results/plain/tables/runs.csv").read_text()
+    assert table.count("failed") == 1
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (["column", "--cells", "1"], "cells = 1 of the width must be 2 or more"),
+        (["column", "--ppc", "3"], "3 particles per cell is no square number"),
+        (["column", "--law", "clay"], "no material 'clay'; choose from"),
+        (["column", "--law", "neo_hookean"], "must have a law in rate form"),
+        (["column", "--start", "wet"], "start = 'wet'"),
+        (["column", "--offset", "0.1"], "--offset '0.1' must be two numbers"),
+        (["column", "--offset", "0.1,0.9"], "must lie between -0.5 and 0.5"),
+        (["column", "--damping", "-1"], "must lie from 0"),
+        (["column", "--limit", "0"], "limit = 0.0 must be above zero"),
+        (["column", "--threads", "0"], "--threads takes whole numbers from 1 on"),
+        (["column", "--smoothing", "rough"], "no smoothing 'rough'; choose from"),
+        (["sweep", "figure9"], "no study 'figure9'; choose from"),
+        (["sweep", "none.toml"], "cannot read none.toml"),
+        (["sweep", "figure4", "--jobs", "0"], "--jobs takes whole numbers from 1 on"),
+        (["sweep", "figure4", "--junit", "/dev/null/x.xml"], "cannot write --junit"),
+        (["column", *SMALL, "--out", "/dev/null/x"], "Not a directory"),
+    ],
+)
+def test_bad_input_is_one_line(verify: Any, words: list[str], says: str) -> None:
+    ended = verify(*words)
+    assert (ended.code, ended.out) == (2, "")
+    assert ended.err.count("\n") == 1
+    assert says.lower() in ended.err.lower()
+
+
+def test_a_store_that_cannot_be_read_stays(verify: Any, swept: Path, tmp_path: Path) -> None:
+    """A broken Result is named and left; a folder of another case is refused."""
+    verify("column", *SMALL, "--duration", "0.05", "--out", "one")
+    (result,) = Path("one/runs").glob("*.json")
+    result.write_text("{broken")
+    ended = verify("column", *SMALL, "--duration", "0.05", "--out", "one")
+    assert ended.code == 2
+    assert ended.err.count("\n") == 1
+    assert result.name in ended.err
+    assert result.read_text() == "{broken"
+    ended = verify("mms", "--cells", "8", "--ppc", "1", "--out", str(swept))
+    assert ended.code == 2
+    assert "holds another case than mms; use another --out folder" in ended.err
+
+
+def test_a_full_disk_is_one_line(verify: Any, monkeypatch: pytest.MonkeyPatch, swept: Path) -> None:
+    """While a run is stored, and while the page is written; what was stored is kept."""
+
+    def no_space(*_: Any, **__: Any) -> Any:
+        raise OSError(28, "No space left on device")
+
+    before = {file: file.read_bytes() for file in (swept / "runs").iterdir()}
+    monkeypatch.setattr("os.replace", no_space)
+    for words in (
+        ("column", *SMALL, "--duration", "0.05"),
+        ("sweep", str(swept.parent / "small.toml"), "--out", str(swept)),
+    ):
+        ended = verify(*words)
+        assert ended.code == 2
+        assert ended.err.count("\n") == 1
+        assert "No space left on device" in ended.err
+    monkeypatch.undo()
+    assert {file: file.read_bytes() for file in (swept / "runs").iterdir()} == before

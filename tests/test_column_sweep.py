@@ -1,0 +1,89 @@
+"""Studies from TOML: what ships reads, a product is a product, and what is wrong is one line."""
+
+from math import inf
+from pathlib import Path
+
+import pytest
+
+from cases.column_run import ColumnRun
+from cases.column_sweep import read, shipped
+
+FIGURES = {f"figure{number}" for number in range(3, 9)}
+
+
+@pytest.mark.parametrize("name", shipped())
+def test_what_ships_can_be_run(name: str) -> None:
+    """Each is set up, small, as it is read; a study says what it is for."""
+    study = read(name, "")
+    assert study.runs
+    assert study.words
+    assert 0 <= study.finish <= len(study.runs)
+    assert len({run.digest for run in study.runs}) == len(study.runs)
+
+
+def test_all_figures_ship() -> None:
+    assert set(shipped()) >= FIGURES
+    assert [run.ppc for run in read("figure4", "").runs] == [1, 4, 9]
+    assert [run.damping for run in read("figure5", "").runs] == [0, 0.02, 0.05, 0.1]
+    assert {(run.smoothing, run.damping) for run in read("figure8", "").runs} == {("deviatoric", 0.05)}
+    assert read("figure3", "").runs == (ColumnRun(),)
+
+
+def own(folder: Path, text: str) -> str:
+    path = folder / "own.toml"
+    path.write_text(text)
+    return str(path)
+
+
+def test_a_product_without_doubles(tmp_path: Path) -> None:
+    text = '[run]\nppc = 1\nlimit = inf\n[sweep]\ncells = [4, 7, 4]\noffset = [[0, 0], [0.1, 0.2]]\nlaw = ["ubcsand"]'
+    study = read(own(tmp_path, text), "verify sweep own.toml")
+    assert [(run.cells, run.offset) for run in study.runs] == [
+        (4, (0.0, 0.0)), (4, (0.1, 0.2)), (7, (0.0, 0.0)), (7, (0.1, 0.2)),
+    ]  # fmt: skip
+    assert {(run.ppc, run.limit, run.law) for run in study.runs} == {(1, inf, "ubcsand")}
+    assert (study.name, study.title, study.axes, study.finish) == ("own", "own", ("cells", "offset", "law"), 4)
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("[run", "is no TOML"),
+        ("[runs]\nppc = 1", "the file has 'runs', and may have title, words, finish, run, sweep"),
+        ("[run]\nparticles = 1", r"\[run\] has 'particles', and may have method, cells"),
+        ("[sweep]\ncase = ['mms']", r"\[sweep\] has 'case'"),
+        ("run = 3", r"run must be a table, \[run\], not 3"),
+        ("[sweep]\nppc = 4", "ppc in .sweep. must be a list of one value or more, not 4"),
+        ("[sweep]\nppc = []", "must be a list of one value or more"),
+        ("[run]\nppc = 4\n[sweep]\nppc = [4, 9]", "must stand in .run. or in .sweep., not in both"),
+        ("[sweep]\nppc = [4, 3]", "3 particles per cell is no square number"),
+        ("[run]\nppc = 'four'", "ppc = 'four': input should be a valid integer"),
+        ("[run]\nstart = 'wet'", "start = 'wet': input should be 'none', 'k0' or 'oedometric'"),
+        ("[run]\nlaw = 'clay'", "no material 'clay'; choose from"),
+        ("[run]\nlaw = 'neo_hookean'", "must have a law in rate form"),
+        ("[run]\ncells = 14\naspect = 6.5001", "must make whole cells"),
+        ("[run]\noffset = [0.7, 0]", "must lie between -0.5 and 0.5"),
+        ("[run]\ndamping = nan", "must lie from 0"),
+        ("[run]\ncourant = inf", "must be above zero and finite"),
+        ("[run]\nsmoothing = 'full:beta=1'", "must be below 1 with both parts"),
+        ("[run]\nlaw = 'truesdell'", "no material 'truesdell'"),
+        ("finish = 2", "finish = 2 must be a whole number from 0 to the 1 runs"),
+        ("words = 'many'", "words must be a list of sentences"),
+        (f"[sweep]\ncells = {list(range(2, 45))}\nppc = {[k * k for k in range(1, 30)]}", "must make 1000 or fewer"),
+    ],
+)
+def test_what_is_wrong_is_said(text: str, says: str, tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match=says) as error:
+        read(own(tmp_path, text), "")
+    assert "\n" not in str(error.value)
+    assert "own.toml" in str(error.value)
+
+
+def test_no_such_study(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="no study 'figure9'; choose from"):
+        read("figure9", "")
+    with pytest.raises(ValueError, match=r"cannot read .*none\.toml: no such file"):
+        read(str(tmp_path / "none.toml"), "")
+    (tmp_path / "binary.toml").write_bytes(b"\xff\xfe")
+    with pytest.raises(ValueError, match="is no TOML"):
+        read(str(tmp_path / "binary.toml"), "")
