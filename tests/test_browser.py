@@ -1,6 +1,7 @@
 """The pages in a real browser: missing images, console errors, horizontal scrolling; and that these checks can fail."""
 
 import os
+import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -12,14 +13,15 @@ import pytest
 from selenium import webdriver
 from selenium.webdriver.chrome.service import Service
 
-from cases import material_exam, objectivity_block, objectivity_kinematic
+from cases import column_sweep, material_exam, objectivity_block, objectivity_kinematic
 from cases.element_paths import TESTS
 from cases.objectivity import examine
 from cases.objectivity_exact import rotated
 from cases.objectivity_kinematic import STEPS
-from cases.runner import InProcess
+from cases.runner import InProcess, run_study
+from cases.store import Store
 from cases.turning_block import Block
-from reports import material_page, objectivity_page
+from reports import column_page, material_page, objectivity_page
 from reports.render import render
 from solver.plugins import create
 
@@ -145,7 +147,23 @@ def material(folder: Path) -> Path:
     return material_page.page(folder, replace(found, checks=(*found.checks, missed)))
 
 
-EXAMINED: dict[str, tuple[Callable[[Path], Path], int]] = {"objectivity": (objectivity, 8), "material": (material, 9)}
+def column(folder: Path) -> Path:
+    """Four small columns, one of them lost, in two families; animations too."""
+    run = {"cells": 4, "duration": 0.4, "law": "drucker_prager"}
+    axes = {"ppc": [1, 4, 9, 16], "limit": [0.5, 9.0]}
+    content = {"title": "Columns", "words": ["What it is for."], "run": run, "sweep": axes}
+    study = column_sweep.build("columns", content, "verify sweep " + "/a/long/path" * 9)
+    store = Store(folder, "column")
+    store.create(study)
+    run_study(study, store, InProcess(), 1)
+    return column_page.page(folder)[1]
+
+
+EXAMINED: dict[str, tuple[Callable[[Path], Path], int]] = {
+    "objectivity": (objectivity, 8),
+    "material": (material, 9),
+    "column": (column, 10),
+}
 
 
 @pytest.fixture(scope="module", params=EXAMINED)
@@ -162,6 +180,33 @@ def test_examinations(browser: webdriver.Chrome, examined: tuple[Path, int], wid
     assert browser.execute_script("return document.images.length") == images
     assert "What missed" in browser.page_source
     assert width > 700 or browser.execute_script(SMALLEST) > 0.8
+
+
+FRAME = """
+const box = document.querySelector(".film"), canvas = box.querySelector("canvas"), range = box.querySelector("input");
+range.value = arguments[0]; range.dispatchEvent(new Event("input"));
+const pixels = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
+let drawn = 0, right = 0;
+for (let k = 3; k < pixels.length; k += 4)
+  if (pixels[k]) { drawn++; right = Math.max(right, (k - 3) / 4 % canvas.width); }
+return [drawn, right / canvas.width, box.querySelector("output").textContent];
+"""
+
+
+def test_a_film_plays(browser: webdriver.Chrome, tmp_path: Path) -> None:
+    """Its frames are drawn, the sand moves to the right, and the button plays and pauses it."""
+    look(browser, column(tmp_path), 1280)
+    (drawn, first, told), (_, last, at) = (browser.execute_script(FRAME, frame) for frame in (0, 56))
+    assert drawn > 500
+    assert first < 0.5 < last
+    assert (told, at) == ("0.00 s", "0.40 s")
+    button = browser.find_element("css selector", ".film button")
+    button.click()
+    assert button.text == "Pause"
+    time.sleep(0.3)
+    button.click()
+    assert button.text == "Play"
+    assert 0 < float(browser.find_element("css selector", ".film output").text.removesuffix(" s")) < 0.4
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,14 @@ from cases.store import Store
 
 VERIFY = [sys.executable, "-m", "verify.main", "mms"]
 POOL = "import verify.conduct; verify.conduct.SMALL = 0; import verify.main; verify.main.main()"
-WITH_WORKERS = [sys.executable, "-c", POOL, "mms"]  # so little work would be done without worker processes
+WITH_WORKERS = [sys.executable, "-c", POOL]  # so little work would be done without worker processes
+EIGHT = """
+[run]
+cells = 7
+[sweep]
+ppc = [4, 9]
+damping = [0.0, 0.02, 0.05, 0.1]
+"""
 PROC = Path("/proc")
 pytestmark = pytest.mark.skipif(not (PROC / "self" / "stat").exists(), reason="reads /proc to see what still runs")
 
@@ -21,19 +28,9 @@ pytestmark = pytest.mark.skipif(not (PROC / "self" / "stat").exists(), reason="r
 class Sweep:
     """A study on two worker processes, in a folder; counts of Results are as on disk."""
 
-    def __init__(self, folder: Path, ppc: str) -> None:
-        self.folder, self.runs = folder / "study", folder / "study" / "runs"
-        self.command = [
-            *WITH_WORKERS,
-            "--cells",
-            "8,16,24,32,40,48",
-            "--ppc",
-            ppc,
-            "--jobs",
-            "2",
-            "--out",
-            str(self.folder),
-        ]
+    def __init__(self, folder: Path, words: list[str], case: str = "mms") -> None:
+        self.folder, self.runs, self.case = folder / "study", folder / "study" / "runs", case
+        self.command = [*WITH_WORKERS, *words, "--jobs", "2", "--out", str(self.folder)]
         self.seen: dict[str, tuple[bytes, int]] = {}
 
     def start(self) -> subprocess.Popen[str]:
@@ -70,11 +67,16 @@ class Sweep:
         assert (process.returncode in (0, 1, 3), err) == (True, "")
         assert "report: " in out
         self.still_there()
-        store = Store(self.folder)
+        store = Store(self.folder, self.case)
         study = store.study()
         assert set(self.results()) == {f"{run.digest}.json" for run in study.runs}
         assert all(store.arrays(run.digest) for run in study.runs)
         assert (self.folder / "report.html").is_file()
+
+
+def of_mms(folder: Path, ppc: str) -> Sweep:
+    """Six levels for each particle count."""
+    return Sweep(folder, ["mms", "--cells", "8,16,24,32,40,48", "--ppc", ppc])
 
 
 def table() -> Iterator[tuple[int, int, str]]:
@@ -104,7 +106,7 @@ def gone_within(pids: set[int], seconds: float) -> None:
 @pytest.mark.slow
 def test_killed_three_times(tmp_path: Path) -> None:
     """While it starts, right after a Result, and in the middle of a run."""
-    sweep = Sweep(tmp_path, "4")
+    sweep = of_mms(tmp_path, "4")
     for delay, new in ((0.5, 0), (0.0, 1), (0.2, 1)):
         sweep.kill(delay, new)
     assert sweep.seen
@@ -113,12 +115,23 @@ def test_killed_three_times(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_killed_ten_times(tmp_path: Path) -> None:
-    sweep = Sweep(tmp_path, "1,4,9")
+    sweep = of_mms(tmp_path, "1,4,9")
     moments = [(0.2, 0), (0.0, 1), (0.7, 0), (0.05, 1), (1.2, 0), (0.1, 1), (1.7, 0), (0.15, 1), (0.01, 1), (2.2, 0)]
     for delay, new in moments:
         sweep.kill(delay, new)
     assert len(sweep.seen) >= 5
     sweep.finish()
+
+
+@pytest.mark.slow
+def test_eight_columns_killed_four_times(tmp_path: Path) -> None:
+    (tmp_path / "eight.toml").write_text(EIGHT)
+    sweep = Sweep(tmp_path, ["sweep", str(tmp_path / "eight.toml")], "column")
+    for delay, new in ((0.5, 0), (0.0, 1), (0.8, 1), (0.3, 2)):
+        sweep.kill(delay, new)
+    assert len(sweep.seen) >= 4
+    sweep.finish()
+    assert len(sweep.results()) == 8
 
 
 @pytest.mark.slow
