@@ -137,11 +137,9 @@ def lead(study: ColumnStudy, ran: Sequence[Ran], said: Sequence[Claim], done: in
     if done < len(study.runs):
         words.append(f"{len(study.runs) - done} are still to be done: the same command goes on.")
     if said:
-        held = sum(claim.reproduced is True for claim in said)
-        missed = sum(claim.reproduced is False for claim in said)
-        open_ = len(said) - held - missed
-        words.append(f"Of {len(said)} sentences of the paper {held} are reproduced and {missed} are not"
-                     + (f"; {open_} cannot be told." if open_ else "."))  # fmt: skip
+        found = [claim.reproduced for claim in said]
+        open_ = f", {found.count(None)} cannot be told" if None in found else ""
+        words.append(f"Sentences of the paper: {found.count(True)} reproduced, {found.count(False)} not{open_}.")
     shrunk = [one for one in ran if one.values["area"] < SHRUNK]
     if shrunk:
         words.append(f"The heap of {len(shrunk)} of them has less than {100 * SHRUNK:.0f} % of the column's area: "

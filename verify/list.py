@@ -1,6 +1,7 @@
 """`verify list`: what there is to choose from. Reads file names and docstrings, imports nothing."""
 
 import ast
+import tomllib
 
 import typer
 
@@ -19,19 +20,28 @@ from solver.plugins import (
     folder,
 )
 from verify.output import printing
+from verify.sweep import STUDIES, names
 
 PACKAGES = (CASES, METHODS, TRANSFERS, SMOOTHINGS, LAYOUTS, SOLUTIONS, MATERIALS, RATES, MISREADINGS)
 REMARKS = {RATES: " (of the laws in rate form)", MISREADINGS: " (negative controls, taken as a rate)"}
 
 
 def list_plugins() -> None:
-    """List cases, methods, transfers, smoothings, layouts, solutions, materials, rates and
-    misreadings with a line about each."""
+    """List cases, methods, transfers, smoothings, layouts, solutions, materials, rates, misreadings
+    and studies with a line about each."""
     with printing():
         for package in PACKAGES:
             typer.echo(f"{KINDS[package]}s{REMARKS.get(package, '')}")
             for name in available(package):
                 typer.echo(f"  {name:20}{summary(package, name)}")
+        typer.echo("studies of the column (verify sweep)")
+        for name in names():
+            typer.echo(f"  {name:20}{title(name)}")
+
+
+def title(study: str) -> str:
+    """What a study calls itself."""
+    return str(tomllib.loads((STUDIES / f"{study}.toml").read_text(encoding="utf-8"))["title"])
 
 
 def summary(package: str, name: str) -> str:

@@ -7,11 +7,14 @@ from typing import Annotated
 
 import typer
 
+from solver.sources import TOP
+
+STUDIES = TOP / "cases" / "studies"
+
 
 def names() -> list[str]:
     """Of the studies that ship; by file names, nothing heavy is imported."""
-    folder = Path(__file__).resolve().parents[1] / "cases" / "studies"
-    return sorted(file.stem for file in folder.glob("*.toml"))
+    return sorted(file.stem for file in STUDIES.glob("*.toml"))
 
 
 def sweep(
