@@ -8,6 +8,7 @@ runs, or what is known of the experiment, cannot tell.
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -78,21 +79,26 @@ def shared(run: ColumnRun, axes: Iterable[str]) -> str:
     return ", ".join(told(axis, getattr(run, axis)) for axis in axes)
 
 
+NOTHING = {
+    ("smoothing", "none"): "no smoothing", ("start", "none"): "no stress at first", ("limit", inf): "no limit",
+    ("gate", inf): "no gate", ("damping", 0.0): "no damping",
+}  # fmt: skip
+
+
 def told(axis: str, value: Any) -> str:
     """A value of an axis in words."""
-    if axis == "cells":
-        return f"{value} cells wide"
-    if axis == "ppc":
-        return f"{value} per cell"
-    if axis == "damping":
-        return f"{100 * value:g} % damping" if value else "no damping"
-    if axis == "smoothing":
-        return "no smoothing" if value == "none" else f"{value} smoothing"
-    if axis in ("method", "law"):
-        return str(value)
+    if (axis, value) in NOTHING:
+        return NOTHING[axis, value]
     if isinstance(value, bool):
         return axis if value else f"no {axis}"
-    return f"{axis} {value if isinstance(value, str | tuple) else f'{value:g}'}".replace("_", " ")
+    if axis == "damping":
+        return f"{100 * value:g} % damping"
+    after = {"cells": "cells wide", "ppc": "per cell", "damping_kind": "damping", "deformation": "F"}
+    if axis in after or axis == "smoothing":
+        return f"{value} {after.get(axis, axis)}"
+    if axis in ("method", "law"):
+        return str(value)
+    return f"{axis} {f'{value:g}' if isinstance(value, float) else value}"
 
 
 def rises(values: Sequence[float]) -> bool:

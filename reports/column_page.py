@@ -72,7 +72,7 @@ def summary(collapse: Collapse, add: Add) -> Section:
         "that hangs together with the wall ends at its toe. The height is that of the heap next to the wall; “height "
         "falls” is by how much it still fell in the last fifth of the time. Area: that of the heap over that of the "
         "column; below 1 material has been lost to particles that crowd. A run rests once the kinetic energy that the "
-        "grid sees stays below 1e-4 of the potential energy there was."
+        "grid sees stays below a ten-thousandth of the potential energy there was."
     )
     return Section("runs", "Runs", [*collapse.study.words, notes], tables=[
         Table("What the runs came to", head, tuple(rows), texts=("outcome",))])  # fmt: skip
@@ -121,7 +121,7 @@ def budget(collapse: Collapse, add: Add) -> Section:
     for place, key in {0: "first", len(collapse.ran) - 1: "last"}.items():
         one, label = collapse.ran[place], collapse.label(collapse.ran[place].run)
         image = add(f"budget_{key}", draw.budget(one), f"Layers of the energy budget over time, {label}.")
-        figures.append((image, f"{label}. The line on top stays at 1 as the budget closes."))
+        figures.append((image, f"{label[0].upper()}{label[1:]}. The line on top stays at 1 as the budget closes."))
     return Section("budget", "Where the energy goes", figures=figures)
 
 

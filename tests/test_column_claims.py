@@ -93,10 +93,13 @@ def test_families_differ_in_one_axis_alone() -> None:
     [
         ("cells", 14, "14 cells wide"),
         ("damping", 0.05, "5 % damping"),
-        ("damping_kind", "objective", "damping kind objective"),
+        ("damping_kind", "objective", "objective damping"),
+        ("deformation", "linear", "linear F"),
+        ("limit", float("inf"), "no limit"),
+        ("limit", 0.5, "limit 0.5"),
         ("smoothing", "none", "no smoothing"),
         ("void", False, "no void"),
-        ("gate", float("inf"), "gate inf"),
+        ("gate", float("inf"), "no gate"),
         ("offset", (0.0, 0.25), "offset (0.0, 0.25)"),
     ],
 )
