@@ -15,8 +15,8 @@ from cases.column_run import ColumnRun
 ASPECTS = 3.0, 9.5  # of the columns that were measured
 Band = tuple[float, float]
 UNCERTAIN = (
-    "The experimental band is the range between two published forms of one scaling law; it is no error bar, and no "
-    "curve of the experiment is shown because none is at hand."
+    "The band of the experiment lies between two forms in which texts quote its scaling law, that of the height "
+    "between two experiments; they are no error bars. No curve of the experiment is shown, because none is at hand."
 )
 
 

@@ -8,7 +8,7 @@ volume V = J V0 that particles keep, over the space in which they are, within th
 drift closer than their det F knows, or apart, it is not, and the heap is smaller, or larger, than its material.
 """
 
-from math import inf, radians, sin
+from math import cos, inf, radians, sin
 from typing import Any
 
 import numpy as np
@@ -21,7 +21,7 @@ from solver.step import Model
 
 STRIPS = 7  # of the width
 SHARE = 0.99
-SLACK = 1e-6  # of the strength: what round-off may pass it by
+SLACK = 1e-6  # of the largest stress: what round-off may pass the strength by
 
 
 class Measure:
@@ -35,10 +35,11 @@ class Measure:
         self.rows: list[dict[str, float]] = []
         self.profiles: list[Floats] = []
         self.momentum = momentum(model)
+        self.plastic, self.worked = 0.0, worked(model)
 
     def places(self, model: Model) -> Floats:
-        """Places (P,2) of the particles, x as the distance from the wall."""
-        x = model.particles.x
+        """Places (P,2) of the particles, x as the distance from the wall; within the grid whatever became of them."""
+        x = np.clip(np.nan_to_num(model.particles.x), 0, model.grid.upper)
         return np.stack([self.end - x[:, 0], x[:, 1]], axis=1) if self.run.mirror else x
 
     def look(self, model: Model) -> None:
@@ -58,10 +59,11 @@ class Measure:
             "toe": float(x[heap, 0].max()),
             "height": float(profile[0]),
             **terms,
-            **split(model, terms["work"]),
+            **self.split(model, terms["work"]),
             "residual": residual(terms, self.first),
             "momentum_lost": float(np.abs(moved - given).max()),
             "mass": float(p.m.sum()),
+            "mass_lost": abs(float(model.grid.mass.sum()) / float(p.m.sum()) - 1) if model.steps else 0.0,
             "fastest": float(np.hypot(*p.v.T).max()),
             **strength(model),
             **scaled(model),
@@ -70,6 +72,21 @@ class Measure:
         row["courant"] = model.dt / model.grid.dx * (wave(model.material, row["largest_s"]) + row["fastest"])
         self.rows.append(row)
         self.profiles.append(profile)
+
+    def split(self, model: Model, work: float) -> dict[str, float]:
+        """Elastic and plastic share of the work of stress.
+
+        Linear elasticity stores an energy, and the rest is plastic. UBCSAND, whose moduli follow s, has none: there the
+        law gives the plastic work, per volume as it is, and the rest is called elastic.
+        """
+        p, law = model.particles, model.material
+        if hasattr(law, "stored"):
+            elastic = float(p.V0 * p.J @ law.stored(p.sigma))
+            return {"elastic": elastic, "plastic": work - elastic}
+        now = worked(model)
+        self.plastic += float((p.in_initial_order("V0") * p.in_initial_order("J")) @ (now - self.worked))
+        self.worked = now
+        return {"elastic": work - self.plastic, "plastic": self.plastic}
 
     def curves(self) -> dict[str, Floats]:
         """Columns of the rows, and `profile` (T,strips)."""
@@ -122,6 +139,15 @@ def surface(x: Floats, m: Floats, strip: float, strips: int) -> Floats:
     return heights
 
 
+def worked(model: Model) -> Floats:
+    """Plastic work per volume of each particle (P,), in the initial order, of a law that counts it."""
+    memory: Any = getattr(model.material, "memory", ())
+    if "work_p" not in memory:
+        return np.zeros(len(model.particles))
+    found: Floats = model.particles.in_initial_order("history")[:, memory.index("work_p")]
+    return found
+
+
 def crowding(x: Floats, V: Floats, side: float) -> float:
     """Volume over space, in squares that have particles and such a square above them; NaN where there are none."""
     cell = np.maximum(np.floor(x / side + 1e-9).astype(int), 0)
@@ -131,41 +157,29 @@ def crowding(x: Floats, V: Floats, side: float) -> float:
     return float(volume[:, :-1][within].mean() / side**2) if within.any() else float("nan")
 
 
-def split(model: Model, work: float) -> dict[str, float]:
-    """Elastic and plastic share of the work of stress.
-
-    Linear elasticity stores an energy, and the rest is plastic. UBCSAND, whose moduli follow s, has none: there the law
-    gives the plastic work, per volume as it is, and the rest is called elastic.
-    """
-    p, law = model.particles, model.material
-    if hasattr(law, "stored"):
-        elastic = float(p.V0 * p.J @ law.stored(p.sigma))
-        return {"elastic": elastic, "plastic": work - elastic}
-    memory: Any = getattr(law, "memory", ())
-    plastic = float(p.V0 @ p.history[:, memory.index("work_p")]) if "work_p" in memory else 0.0
-    return {"elastic": work - plastic, "plastic": plastic}
-
-
 def strength(model: Model) -> dict[str, float]:
-    """Share of the volume whose stress, as the forces have it, is outside the cone of friction, and by how much.
+    """Share of the volume whose stress, as the forces have it, is outside the strength in the plane, and by how much.
 
-    `beyond`: the largest t/(s sin phi) - 1 of particles with more than 1 % of the column's largest pressure.
+    `beyond`: the largest t/(s sin phi + c cos phi) - 1 of particles with more than 1 % of the largest s. Of laws that
+    yield by t and s alone; zero of others. `idle`: the share without stress. `largest_s`: the largest s.
     """
     p, law = model.particles, model.material
-    phi: float | None = getattr(law, "phi", None) or getattr(law, "phi_f", None)
-    if phi is None or getattr(law, "c", False):
-        return {"outside": 0.0, "beyond": 0.0, "largest_s": 0.0}
     sigma = p.felt if p.felt.size else p.sigma
     s, t = -(sigma[:, 0] + sigma[:, 1]) / 2, np.hypot((sigma[:, 0] - sigma[:, 1]) / 2, sigma[:, 3])
-    slack = SLACK * float(np.abs(sigma).max())
-    out = t > sin(radians(phi)) * s + slack
-    pressed = s > 0.01 * max(float(s.max()), 1e-300)
-    ratio = t[pressed] / (s[pressed] * sin(radians(phi))) - 1
-    return {
-        "outside": float(out.mean()),
-        "beyond": float(max(0.0, ratio.max(initial=0.0))),
+    found = {
         "largest_s": float(s.max()),
+        "idle": float((p.sigma == 0).all(axis=1).mean()),
+        "outside": 0.0,
+        "beyond": 0.0,
     }
+    phi = radians(getattr(law, "phi_f", getattr(law, "phi", 0.0)))
+    if not phi or hasattr(law, "cone"):
+        return found
+    strong = sin(phi) * s + law.c * cos(phi)  # type: ignore[attr-defined]
+    pressed = s > 0.01 * max(float(s.max()), 1e-300)
+    ratio = t[pressed] / strong[pressed] - 1
+    outside = float((t > strong + SLACK * float(np.abs(sigma).max())).mean())
+    return found | {"outside": outside, "beyond": float(max(0.0, ratio.max(initial=0.0)))}
 
 
 def scaled(model: Model) -> dict[str, float]:
@@ -190,10 +204,23 @@ def final(run: ColumnRun, curves: dict[str, Floats]) -> dict[str, float]:
 
     `rest`: since when the kinetic energy of the grid is below 1e-4 of the potential energy there was; inf if it is not.
     `area`: under the final profile, over that of the column: 1 and what it has dilated, or less where it has shrunk.
+    Shares of the potential energy there was, largest at any time: `unbalanced`, of the budget; `misworked`, between the
+    work of the law and that of the forces; `lost` by the method; `plastic_falls`, that plastic work gave back.
     `creep`: how much the height still changed in the last fifth of the time, as a share of it.
     """
     values = {name: float(column[-1]) for name, column in curves.items() if name != "profile"}
-    for name in ("outside", "beyond", "largest_s", "cut", "void", "fastest", "momentum_lost", "largest_J", "courant"):
+    for name in (
+        "outside",
+        "beyond",
+        "largest_s",
+        "cut",
+        "void",
+        "fastest",
+        "momentum_lost",
+        "largest_J",
+        "courant",
+        "mass_lost",
+    ):
         values[f"most_{name}"] = float(curves[name].max())
     first = float(curves["potential"][0])
     moving = np.flatnonzero(curves["on_grid"] > 1e-4 * first)
@@ -201,7 +228,11 @@ def final(run: ColumnRun, curves: dict[str, Floats]) -> dict[str, float]:
     t, height = curves["t"], curves["height"]
     values["rest"] = float(t[last + 1]) if last + 1 < len(t) else inf
     values["creep"] = float(height[t >= 0.8 * t[-1]][0] - height[-1]) / max(float(height[-1]), 1e-300)
+    plastic = curves["plastic"]
     values["unbalanced"] = float(np.abs(curves["residual"]).max()) / first
+    values["misworked"] = float(np.abs(curves["convection"]).max()) / first
+    values["lost"] = float(np.abs(curves["transfer"] + curves["convection"]).max()) / first
+    values["plastic_falls"] = float((np.maximum.accumulate(plastic) - plastic).max()) / first
     values["run_out"] = values["front_99"] / run.width - 1
     strip = run.width / min(STRIPS, run.cells)
     values["area"] = float(curves["profile"][-1].sum()) * strip / (run.width * run.height)

@@ -13,6 +13,7 @@ from solver.sources import TOP, digest
 
 Start = Literal["none", "k0", "oedometric"]
 Wall = Literal["roller", "fixed"]
+MOST = 1000  # cells: 4 GB of grid
 PARTS = ("column_run", "column_start", "column_measure", "memory", "study")
 
 
@@ -63,8 +64,8 @@ class ColumnRun:
 
     def __post_init__(self) -> None:
         per_side(self.ppc)
-        if self.cells < 2:
-            raise ValueError(f"cells = {self.cells} of the width must be 2 or more")
+        if not 2 <= self.cells <= MOST:
+            raise ValueError(f"cells = {self.cells} of the width must be 2 or more, and at most {MOST}")
         for name in ("courant", "duration", "gate", "limit", "width", "aspect", "g"):
             if not getattr(self, name) > 0 or (getattr(self, name) == inf and name not in ("gate", "limit")):
                 raise ValueError(f"{name} = {getattr(self, name)} must be above zero and finite")
@@ -72,6 +73,10 @@ class ColumnRun:
             raise ValueError(f"aspect = {self.aspect} must make whole cells of the height: {self.cells} are the width")
         if not 2 <= self.channel <= 100:
             raise ValueError(f"channel = {self.channel} must be from 2 to 100 widths")
+        if abs(self.channel * self.cells - round(self.channel * self.cells)) > 1e-9:
+            raise ValueError(f"channel = {self.channel} must make whole cells: {self.cells} are the width")
+        if self.g > 1e4:
+            raise ValueError(f"g = {self.g} must be at most 1e4")
         for name, value, words in (("start", self.start, Start), ("left", self.left, Wall)):
             if value not in get_args(words):
                 raise ValueError(f"{name} = {value!r} must be one of {', '.join(get_args(words))}")
@@ -99,8 +104,9 @@ class ColumnRun:
 
     @property
     def digest(self) -> str:
-        """Name of the Result: hash of the parameters and of the sources, 16 hex digits."""
-        return hashlib.sha256((json.dumps(asdict(self), sort_keys=True) + sources_digest()).encode()).hexdigest()[:16]
+        """Name of the Result: hash of the parameters and of the sources, 16 hex digits. No damping is of no kind."""
+        same = asdict(self) | ({} if self.damping else {"damping_kind": "local"})
+        return hashlib.sha256((json.dumps(same, sort_keys=True) + sources_digest()).encode()).hexdigest()[:16]
 
 
 @dataclass(frozen=True)

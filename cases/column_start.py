@@ -29,7 +29,8 @@ def stress(particles: Particles, law: Any, start: str, surface: float, g: float)
     down = -sigma[:, 1]
     particles.sigma[:] = np.stack([np.interp(load, down, column) for column in sigma.T], axis=1)
     particles.F_old = particles.F.reshape(-1, 4).copy()
-    particles.history = np.stack([np.interp(load, down, column) for column in history.T], axis=1)
+    kept = [np.interp(load, down, column) for column in history.T]
+    particles.history = np.stack(kept, axis=1) if kept else np.zeros((len(load), 0))
     particles.work = np.zeros((len(particles), 2))
 
 

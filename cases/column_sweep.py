@@ -17,7 +17,7 @@ import tomllib
 from dataclasses import fields
 from itertools import product
 from pathlib import Path
-from typing import Any
+from typing import Any, get_type_hints
 
 from pydantic import TypeAdapter, ValidationError
 
@@ -27,7 +27,7 @@ SHIPPED = Path(__file__).with_name("studies")
 ALLOWED = tuple(item.name for item in fields(ColumnRun) if item.name != "case")
 PARTS = ("title", "words", "finish", "run", "sweep")
 MOST = 1000  # runs of a study: more is a slip of the pen
-READ: TypeAdapter[ColumnRun] = TypeAdapter(ColumnRun)
+READ: dict[str, TypeAdapter[Any]] = {name: TypeAdapter(kind) for name, kind in get_type_hints(ColumnRun).items()}
 
 
 def shipped() -> list[str]:
@@ -70,9 +70,11 @@ def build(name: str, content: dict[str, Any], command: str) -> ColumnStudy:
     if not isinstance(words, list) or not all(isinstance(word, str) for word in words):
         raise ValueError(f"words must be a list of sentences, not {words!r}")
     finish = content.get("finish", len(runs))
-    if not isinstance(finish, int) or not 0 <= finish <= len(runs):
+    if isinstance(finish, bool) or not isinstance(finish, int) or not 0 <= finish <= len(runs):
         raise ValueError(f"finish = {finish!r} must be a whole number from 0 to the {len(runs)} runs there are")
-    title = str(content.get("title", name.replace("_", " ")))
+    title = content.get("title", name.replace("_", " "))
+    if not isinstance(title, str):
+        raise ValueError(f"title must be a sentence, not {title!r}")
     return ColumnStudy(name, title, command, runs, tuple(sweep), tuple(words), finish)
 
 
@@ -96,13 +98,15 @@ def run_of(values: dict[str, Any]) -> ColumnRun:
     """A run. Raises ValueError with one line for a value that no column has."""
     from cases.library.column import check
 
-    try:
-        run = READ.validate_python(values)
-    except ValidationError as error:
-        first = error.errors()[0]
-        place = ".".join(str(part) for part in first["loc"])
-        says = first["msg"].removeprefix("Value error, ")
-        told = f"{place} = {first['input']!r}: " if place and not isinstance(first["input"], dict) else ""
-        raise ValueError(f"{told}{says[0].lower()}{says[1:]}") from None
+    run = ColumnRun(**{key: strictly(key, value) for key, value in values.items()})
     check(run)
     return run
+
+
+def strictly(key: str, value: Any) -> Any:
+    """The value of a field, as TOML has it. Raises ValueError for one of another kind: true is no number here."""
+    try:
+        return READ[key].validate_python(tuple(value) if isinstance(value, list) else value, strict=True)
+    except ValidationError as error:
+        says = error.errors()[0]["msg"]
+        raise ValueError(f"{key} = {value!r}: {says[0].lower()}{says[1:]}") from None

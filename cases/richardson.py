@@ -19,6 +19,7 @@ from scipy.optimize import brentq
 Kind = Literal["converges", "oscillates", "unsettled", "equal"]
 SAFETY = 1.25  # of three levels whose order is observed
 LARGEST = 10.0  # order that is looked for
+FORMAL = 2.0  # order that is used: more is an accident, and would make the uncertainty too small
 LEAST = 0.5  # with a lower order the limit lies beyond 2.4 times the last difference: nothing has settled
 
 
@@ -40,13 +41,13 @@ def extrapolate(h: Sequence[float], f: Sequence[float]) -> Extrapolation:
     fine, coarse = f[1] - f[0], f[2] - f[1]
     half_range = (max(f) - min(f)) / 2
     if fine == 0:
-        return Extrapolation("equal", f[0], inf, f[0], 0.0)
+        return Extrapolation("equal", f[0], float("nan"), f[0], half_range)
     if fine * coarse <= 0:
         return Extrapolation("oscillates", f[0], float("nan"), float("nan"), half_range)
     p = order(h[1] / h[0], h[2] / h[1], coarse / fine)
     if not p >= LEAST:
         return Extrapolation("unsettled", f[0], float("nan"), float("nan"), half_range)
-    grows = (h[1] / h[0]) ** p - 1
+    grows = (h[1] / h[0]) ** min(p, FORMAL) - 1
     return Extrapolation("converges", f[0], p, f[0] - fine / grows, SAFETY * abs(fine) / grows)
 
 

@@ -33,7 +33,8 @@ def cost(run: Run) -> float:
 
 def pending(study: Study, store: Store) -> list[Run]:
     """The runs still to be done, the longest first, so that none is left alone at the end."""
-    return sorted((run for run in study.runs if store.get(run.digest) is None), key=cost, reverse=True)
+    once = {run.digest: run for run in study.runs}
+    return sorted((run for digest, run in once.items() if store.get(digest) is None), key=cost, reverse=True)
 
 
 def perform(run: Run, folder: Path, threads: int) -> Result:

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
-from cases.column_exam import Collapse, scatter
+from cases.column_exam import Collapse
 from cases.column_run import ColumnResult, ColumnRun
 from cases.store import Store
 from reports.examined import Section
@@ -37,18 +37,18 @@ def refinement(collapse: Collapse, add: Add) -> Section:
     if rows:
         head = (*heads, "quantity", "coarse to fine [m]", "finest three", "order", "limit", "uncertainty [m]")
         tables.append(Table("Richardson extrapolation and grid convergence index", head, tuple(rows), texts=head[:5]))
-    moved = scatter(collapse.ran, collapse.study.axes)
-    if moved:
+    if collapse.scattered:
         head = ("quantity", "runs with", "runs", "mean [m]", "standard deviation [mm]", "range [mm]", "of the mean")
         tables.append(Table("Scatter over where the particles lie in their cells at first", head, tuple(
-            (name, words or DASH, str(n), f"{mean:.4f}", f"{1e3 * deviation:.1f}", f"{1e3 * reach:.1f}",
-             percent(deviation / mean))
-            for words, name, n, mean, deviation, reach in moved), texts=("runs with",)))  # fmt: skip
+            (one.quantity, one.runs or DASH, str(one.count), f"{one.mean:.4f}", f"{1e3 * one.deviation:.1f}",
+             f"{1e3 * one.reach:.1f}", percent(one.deviation / one.mean))
+            for one in collapse.scattered), texts=("runs with",)))  # fmt: skip
     text = (
         "There is no exact solution. Where three levels approach a limit from one side, the order is observed, the "
-        "limit is extrapolated and the uncertainty is 1.25 times the grid convergence index. Where values go to and "
-        "fro, or settle at no order of a half or more, nothing converges on these levels, and the uncertainty is half "
-        "the range of the three values: no bound."
+        "limit is extrapolated, with an order of 2 at most, and the uncertainty is the grid convergence index, 1.25 "
+        "times the distance from it. Where values go to and fro, or settle at no order of a half or more, nothing "
+        "converges on these levels, and the uncertainty is half the range of the three values: no bound. No difference "
+        "means more than the scatter over the places of particles (study offsets)."
     )
     return Section("refinement", "Solution verification", [text], figures, tables)
 
@@ -82,29 +82,37 @@ def films(collapse: Collapse, store: Store, add: Add, ran: Sequence[tuple[Column
 
 def alive(collapse: Collapse) -> Section:
     """What scaling, void strain and smoothing do to the runs, failed ones too."""
-    head = ("run", "limited domains", "parted", "void strain", "det F", "crowding", "outside the cone",
-            "worst t/(s sin φ)", "largest s [kPa]", "fastest particle [m/s]", "Courant number", "steps", "CPU [s]",
-            "million updates a second")  # fmt: skip
+    head = ("run", "limit [cells]", "limited domains", "open", "without stress", "void strain", "det F", "crowding",
+            "outside the cone", "worst t/(s sin φ)", "largest s / ρgh₀", "fastest particle [m/s]", "Courant number",
+            "steps", "CPU [s]", "million updates a second")  # fmt: skip
     rows = []
     for run in collapse.study.runs:
         result = collapse.results.get(run.digest)
         if result and result.values:
             v = result.values
+            weight = float(result.parameters["rho0"]) * run.g * run.height
             rows.append((
-                collapse.label(run), percent(v["most_cut"]), percent(v["most_void"]), f"{v['void_strain']:.3g}",
+                collapse.label(run), f"{float(result.parameters['domain limit']):.3g}", percent(v["most_cut"]),
+                percent(v["void"]), percent(v["idle"]), f"{v['void_strain']:.3g}",
                 f"{v['least_J']:.3g} to {v['most_largest_J']:.3g}", f"{v['crowding']:.2f}", percent(v["most_outside"]),
-                f"{1 + v['most_beyond']:.3g}", f"{v['most_largest_s'] / 1e3:.1f}", f"{v['most_fastest']:.2f}",
+                f"{1 + v['most_beyond']:.3g}", f"{v['most_largest_s'] / weight:.1f}", f"{v['most_fastest']:.2f}",
                 f"{v['most_courant']:.2f}", str(result.steps), f"{result.cpu_s:.1f}",
                 f"{result.updates / max(result.cpu_s, 1e-9) / 1e6:.1f}"))  # fmt: skip
     text = (
-        "A cohesionless column of CPDI particles lives by three things, which can be switched off: domains no longer "
-        "than a cell, a memory of void strain, and an update of F that keeps its determinant. The table says how many "
-        "particles they touch at most: the share whose domain is cut, the share that has parted from its neighbours, "
-        "the volume of void per solid at the end, and the extremes of det F. Crowding is the volume that particles "
-        "keep, det F times what they began with, over the space in which they are: it should be 1. Above it the heap "
-        "is too small for its material, which the particles do not notice. It grows as particles are fewer.",
-        "Smoothing p or the deviator alone takes stresses out of the cone of friction: the share of particles that the "
-        "forces see outside it, and the worst ratio among those under more than 1 % of the largest pressure.",
+        "A cohesionless column of CPDI particles lives by three things, which can be switched off: domains of limited "
+        "length, a memory of void strain, and an update of F that keeps its determinant. The table says how many "
+        "particles they touch: the largest share whose domain is cut, and at the end the share with void strain, and "
+        "without any stress, the volume of void per solid, and the extremes of det F.",
+        "A particle with void strain waits for as much compression before it carries again, whether or not there is "
+        "any void around it. Most particles of a heap at rest do so, deep inside too, and the others carry the weight: "
+        "void strain is opened by the noise of velocities, and what opens it is not undone. This is a limitation of "
+        "such a memory, here and in other codes that correct volumes.",
+        "Crowding is the volume that particles keep, det F times what they began with, over the space in which they "
+        "are: it should be 1. Above it the heap is too small for its material, which the particles do not notice. It "
+        "grows as particles are fewer.",
+        "Smoothing p or the deviator alone takes stresses out of the cone of friction: the largest share of particles "
+        "that the forces see outside it, in the plane, and the worst ratio among those under more than 1 % of the "
+        "largest s. The largest s is that of sand striking the floor.",
     )
     return Section("alive", "What keeps it alive, and what leaves the cone", text, tables=[
         Table("Largest values over each run", head, tuple(rows), texts=("det F",))])  # fmt: skip

@@ -1,7 +1,7 @@
 """A run as an animation inside the page: places of its particles, packed as whole numbers, drawn on a canvas.
 
 Particles are coloured in bands by the height at which they began, as the sand of the experiment was layered. Places are
-kept to 1/65535 of the picture, one of many is drawn where there are more than the page should carry.
+kept to 1/65534 of the picture, one of many is drawn where there are more than the page should carry.
 """
 
 import base64
@@ -20,7 +20,8 @@ EACH = 4_000
 
 @dataclass(frozen=True)
 class Film:
-    """`data`: base64 of unsigned 16-bit numbers, little-endian: x and y of each particle, frame after frame.
+    """`data`: base64 of unsigned 16-bit numbers, little-endian: x and y of each particle, frame after frame;
+    65535 is outside the picture.
 
     `bands`: one character a particle, its colour; `wide`, `high`: what the whole range is, in m; `times` in s.
     """
@@ -39,7 +40,8 @@ def film(run: ColumnRun, arrays: Mapping[str, Any], label: str, wide: float, mos
     frames = away(run, arrays["frame_x"])
     frames = frames[:, :: -(-frames.shape[1] // most)]
     high = 1.02 * run.height
-    scaled = np.clip(np.nan_to_num(frames / [wide, high]), 0, 1) * 65535
+    scaled = np.clip(np.nan_to_num(frames / [wide, high]), 0, 1) * 65534
+    scaled[~((frames <= [wide, high]).all(axis=2))] = 65535  # what has flown out of the picture
     bands = (frames[0, :, 1] / run.height * BANDS).astype(int) % 2
     return Film(
         label,

@@ -75,7 +75,7 @@ def _components(key: str, array: Array, count: int) -> Singles:
         return _single(array)
     if array.shape == (count, 2):
         return _single(np.pad(array, ((0, 0), (0, 1))))
-    if array.shape == (count, 4) and key == "sigma":
+    if array.shape == (count, 4) and key.startswith("sigma"):
         return _single(np.pad(array, ((0, 0), (0, 2))))
     if array.shape == (count, 2, 2):
         tensor = np.pad(array, ((0, 0), (0, 1), (0, 1)))

@@ -119,17 +119,17 @@ class Model:
         return MASS_CUTOFF * float(self.particles.m.max())
 
 
-def check_time_step(model: Model) -> None:
-    """Raise RunFailed where dt is above dx / (c + |v|), the time a wave needs to cross a cell."""
+def check_time_step(model: Model, way_out: str = "") -> None:
+    """Raise RunFailed where dt is above dx / (c + |v|), the time a wave needs to cross a cell; `way_out`: a remark."""
     speed = model.material.wave_speed() + float(np.hypot(*model.particles.v.T).max())
     limit = model.grid.dx / speed
     if model.dt > limit:
-        raise RunFailed(f"dt = {model.dt:.3g} is above the stability limit {limit:.3g} (--force runs it all the same)")
+        raise RunFailed(f"dt = {model.dt:.3g} is above the stability limit {limit:.3g}{way_out}")
 
 
 def fail(model: Model, row: int, reason: str) -> None:
     """Raise RunFailed for the particle in that row; what is not finite is named first, since it is the cause."""
     p = model.particles
     finite = all(np.isfinite(a[row]).all() for a in (p.x, p.v, p.F, p.sigma))
-    cell = tuple(model.grid.cell(p.x[row]).tolist()) if np.isfinite(p.x[row]).all() else None
+    cell = tuple(model.grid.cell(p.x[row]).tolist()) if (np.abs(p.x[row]) < 1e9 * model.grid.dx).all() else None
     raise RunFailed(reason if finite else "a value that is not finite", model.steps, int(p.id[row]), cell)

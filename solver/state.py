@@ -116,6 +116,7 @@ class Particles:
 
     def in_initial_order(self, name: str) -> Any:
         """The array `name` with its rows as in the initial layout."""
-        array = np.empty_like(getattr(self, name))
-        array[self.id] = getattr(self, name)
+        found = getattr(self, name)
+        array = np.empty_like(found)
+        array[self.id] = found
         return array

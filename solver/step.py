@@ -129,6 +129,8 @@ def grid_to_particles(model: Model) -> None:
         g.nx, g.ny, g.motion, model.dt, model.scheme.half(model.dt), model.scheme.transfer.share, model.lost,
         model.crossed,
     )  # fmt: skip
+    if model.budget:
+        model.budget.took(model)
     model.basis.convect(p, g, model.dt)
     refuse_lost(model)
 

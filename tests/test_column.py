@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from cases.column_measure import connected, quantile, surface
+from cases.column_measure import Measure, connected, final, quantile, surface
 from cases.column_run import ColumnRun
 from cases.column_start import oedometric
 from cases.library.column import Gate, execute, gravity, setup
 from solver.material.mohr_coulomb import MohrCoulomb
 from solver.material.ubcsand import Ubcsand
-from solver.step import advance
+from solver.step import RunFailed, advance
 
 SMALL = ColumnRun(cells=4, ppc=4, duration=0.3)
 
@@ -38,7 +38,9 @@ def test_budgets_close(done: Any) -> None:
     first = float(arrays["curve_potential"][0])
     assert result.values["unbalanced"] < 2e-3
     assert result.values["most_momentum_lost"] < 1e-9
-    assert (arrays["curve_mass"] == arrays["curve_mass"][0]).all()
+    assert result.values["most_mass_lost"] < 1e-13
+    assert result.values["misworked"] < 2e-3
+    assert result.values["plastic_falls"] < 1e-4
     assert arrays["curve_potential"][-1] < 0.5 * first
     assert arrays["curve_kinetic"].max() > 0.1 * first
     assert arrays["curve_walls"][-1] < 0 < arrays["curve_plastic"][-1]
@@ -46,12 +48,37 @@ def test_budgets_close(done: Any) -> None:
     assert 0 < arrays["curve_elastic"].max() < 0.02 * first
 
 
-def test_a_term_left_out_is_seen(done: Any) -> None:
-    """Each of the larger terms of the budget is needed for it to close."""
-    _, arrays = done
+@pytest.mark.parametrize("name", ["kinetic", "potential", "damping", "walls", "transfer"])
+def test_a_term_that_is_wrong_is_seen(name: str) -> None:
+    """One per cent too much of a term that matters is a residual; no term is the rest of the others."""
+    _, arrays = execute(replace(SMALL, damping=0.05))
+    wrong = arrays["curve_residual"] + 0.1 * (arrays[f"curve_{name}"] - arrays[f"curve_{name}"][0])
     first = float(arrays["curve_potential"][0])
-    for name in ("kinetic", "work", "walls", "transfer"):
-        assert np.abs(arrays["curve_residual"] - arrays[f"curve_{name}"]).max() > 4e-3 * first
+    assert np.abs(wrong).max() > np.abs(arrays["curve_residual"]).max() + 1e-4 * first
+
+
+def test_particles_that_gain_energy_are_seen() -> None:
+    """Velocities that grow by themselves are in no term, and a law that works too much is not in the forces."""
+    model, steps = setup(SMALL)
+    measure = Measure(SMALL, model)
+    measure.look(model)
+    for _ in range(steps):
+        advance(model, gravity)
+        model.particles.v *= 1 + 2e-4
+        model.particles.work *= 1 + 2e-4
+    measure.look(model)
+    values = final(SMALL, measure.curves())
+    assert values["unbalanced"] > 0.01
+    assert values["misworked"] > 0.01
+
+
+def test_crossings_make_energy_in_classical_mpm() -> None:
+    """The work of its forces is another than that of its stress; of the others it is the same to a thousandth."""
+    worked = {
+        m: execute(replace(SMALL, method=m, duration=0.6))[0].values["misworked"] for m in ("mpm", "gimp", "cpdi")
+    }
+    assert worked["mpm"] > 0.1
+    assert max(worked["gimp"], worked["cpdi"]) < 2e-3
 
 
 def test_the_collapse(done: Any) -> None:
@@ -83,23 +110,33 @@ def test_what_is_kept(done: Any) -> None:
 
 def test_density_and_modulus_scaled_together() -> None:
     """Friction without cohesion has no stress of its own: the same places, to round-off, and scaled stresses."""
-    one, other = (went(replace(SMALL, law=f"mohr_coulomb:{p}"), 300) for p in ("E=840e3", "E=420e3,rho0=1325"))
+    one, other = (went(replace(SMALL, law=f"mohr_coulomb:{p}"), 300) for p in ("E=840e3", "E=504e3,rho0=1590"))
     np.testing.assert_allclose(other.particles.x, one.particles.x, atol=1e-9)
-    np.testing.assert_allclose(2 * other.particles.sigma, one.particles.sigma, atol=1e-6)
+    np.testing.assert_allclose(other.particles.sigma / 0.6, one.particles.sigma, atol=1e-4)
     moved = np.abs(one.particles.x - one.particles.X).max()
     assert moved > 1e-2
     stiffer = went(replace(SMALL, law="mohr_coulomb:E=1680e3,rho0=2650", courant=0.4 * 2**0.5), 300)
     assert np.abs(stiffer.particles.x - one.particles.x).max() > 1e-4  # E alone is not without effect
 
 
-def test_a_mirrored_column_is_the_mirror_image() -> None:
-    one, other = (went(replace(SMALL, mirror=m), 300) for m in (False, True))
+@pytest.mark.parametrize(
+    "change",
+    [
+        {},
+        {"law": "ubcsand", "start": "oedometric"},
+        {"smoothing": "deviatoric", "damping": 0.05},
+        {"gate": 2.0, "left": "fixed"},
+    ],
+    ids=str,
+)
+def test_a_mirrored_column_is_the_mirror_image(change: Any) -> None:
+    one, other = (went(replace(SMALL, mirror=m, **change), 300) for m in (False, True))
     end = other.grid.upper[0]
     x = other.particles.in_initial_order("x")
     per_column = 7 * 4 * 2
     image = x.reshape(-1, per_column, 2)[::-1].reshape(-1, 2) * [-1, 1] + [end, 0]
     np.testing.assert_allclose(image, one.particles.in_initial_order("x"), atol=1e-9)
-    assert np.abs(one.particles.x - one.particles.X).max() > 1e-2
+    assert np.abs(one.particles.x - one.particles.X).max() > 5e-3
 
 
 @pytest.mark.parametrize(
@@ -124,6 +161,33 @@ def test_what_else_there_is(change: Any, gone: float) -> None:
     assert arrays["curve_front_99"][-1] > (1 + gone) * SMALL.width
     assert result.values["most_momentum_lost"] < 1e-9
     assert (result.values["damping"] > 0) == ("damping" in change)
+
+
+def test_a_step_that_is_too_long_is_a_failed_run() -> None:
+    result, arrays = execute(replace(SMALL, courant=5.0))
+    assert result.failure
+    assert "above the stability limit" in result.failure.reason
+    assert (result.steps, len(arrays["curve_t"]), result.values["t"]) == (0, 1, 0.0)
+
+
+def test_a_smoothed_run_that_flies_apart_is_a_failed_run() -> None:
+    """Smoothing looks into cells: for a particle that has left the grid there is none."""
+    run = replace(SMALL, cells=3, smoothing="volumetric:into=history,where=node", damping=0.3, duration=1.0)
+    result, _ = execute(replace(run, damping_kind="objective"))
+    assert result.failure
+    assert "outside the grid" in result.failure.reason
+    for lost in (np.nan, -1.0, 1e30):
+        model, _ = setup(replace(SMALL, smoothing="volumetric"))
+        model.particles.x[5, 0] = lost
+        with pytest.raises(RunFailed, match=r"outside the grid|not finite"):
+            advance(model, gravity)
+
+
+def test_undamped_runs_are_one_run() -> None:
+    """No damping is of no kind."""
+    one, other = (replace(SMALL, damping_kind=kind) for kind in ("local", "objective"))
+    assert one.digest == other.digest
+    assert replace(one, damping=0.1).digest != replace(other, damping=0.1).digest
 
 
 def test_without_what_keeps_it_alive() -> None:
@@ -180,6 +244,10 @@ def test_measures_of_known_shapes() -> None:
     [
         ({"ppc": 3}, "no square number"),
         ({"cells": 1}, "must be 2 or more"),
+        ({"cells": 2000}, "at most 1000"),
+        ({"channel": 7.3}, "must make whole cells"),
+        ({"g": 1e300}, "must be at most"),
+        ({"law": "mohr_coulomb:rho0=1e-300"}, "steps would be needed"),
         ({"duration": 0.0}, "must be above zero"),
         ({"aspect": 0.3}, "must make whole cells"),
         ({"start": "wet"}, "must be one of none, k0, oedometric"),

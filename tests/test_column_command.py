@@ -75,7 +75,7 @@ def test_a_column_from_release_to_rest(verify: Any) -> None:
     names = sorted(file.name for file in Path("results/column/vtk").iterdir())
     assert len(names) == 2 * 8 + 2
     assert f"{run.digest}.pvd" in names
-    assert len(ElementTree.parse("out.xml").getroot()) == 6
+    assert len(ElementTree.parse("out.xml").getroot()) == 8
     header = Path("results/column/tables/curves.csv").read_text().partition("\n")[0].split(",")
     assert {"t", "front_99", "height", "kinetic", "plastic", "residual"} <= set(header)
 

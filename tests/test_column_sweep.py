@@ -18,7 +18,7 @@ def test_what_ships_can_be_run(name: str) -> None:
     assert study.runs
     assert study.words
     assert 0 <= study.finish <= len(study.runs)
-    assert len({run.digest for run in study.runs}) == len(study.runs)
+    assert len(set(study.runs)) == len(study.runs)
 
 
 def test_all_figures_ship() -> None:
@@ -58,6 +58,17 @@ def test_a_product_without_doubles(tmp_path: Path) -> None:
         ("[run]\nppc = 4\n[sweep]\nppc = [4, 9]", "must stand in .run. or in .sweep., not in both"),
         ("[sweep]\nppc = [4, 3]", "3 particles per cell is no square number"),
         ("[run]\nppc = 'four'", "ppc = 'four': input should be a valid integer"),
+        ("[run]\ncells = '4'", "cells = '4': input should be a valid integer"),
+        ("[run]\ncells = true", "cells = True: input should be a valid integer"),
+        ("[run]\ndamping = false", "damping = False: input should be a valid number"),
+        ("[run]\nvoid = 1", "void = 1: input should be a valid boolean"),
+        ("[run]\noffset = [0.1]", "offset"),
+        ("[run]\ncells = 100000", "at most 1000"),
+        ("[run]\nchannel = 7.3", "channel = 7.3 must make whole cells"),
+        ("[run]\ng = 1e300", "must be at most 1e4"),
+        ("[run]\nlaw = 'mohr_coulomb:rho0=1e-300'", "steps would be needed"),
+        ("title = 3", "title must be a sentence, not 3"),
+        ("finish = true", "finish = True must be a whole number"),
         ("[run]\nstart = 'wet'", "start = 'wet': input should be 'none', 'k0' or 'oedometric'"),
         ("[run]\nlaw = 'clay'", "no material 'clay'; choose from"),
         ("[run]\nlaw = 'neo_hookean'", "must have a law in rate form"),

@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.column_measure import Measure, final
+from cases.column_measure import Measure, final, wave
 from cases.column_run import ColumnResult, ColumnRun
 from cases.column_start import stress
 from cases.environment import environment
@@ -30,7 +30,7 @@ from cases.memory import forget_peak, peak_memory
 from cases.study import Failure
 from solver.boundary import Walls, box, moving
 from solver.damping import Damping
-from solver.diagnostics import Budget
+from solver.diagnostics import Budget, kinetic
 from solver.layout import rectangle
 from solver.plugins import MATERIALS, METHODS, SMOOTHINGS, TRANSFERS, create
 from solver.rate_law import RateLaw
@@ -39,6 +39,7 @@ from solver.step import Model, RunFailed, Scheme, advance, check_time_step
 
 LOOKS, FRAMES, SNAPSHOTS = 200, 57, 8  # of a run: rows, places of particles, all fields
 DRAWN = 20_000  # particles of a frame
+MOST = 1e8  # steps
 
 
 def setup(run: ColumnRun) -> tuple[Model, int]:
@@ -53,20 +54,41 @@ def setup(run: ColumnRun) -> tuple[Model, int]:
     gravity = np.array([0.0, -run.g])
     particles.b[:] = gravity
     stress(particles, law, run.start, run.height, run.g)
-    steps = ceil(run.duration / (run.courant * dx / law.wave_speed()) * (1 - 1e-12))
+    steps = steps_of(run, law)
+    dt = run.duration / steps
+    if run.start == "none":
+        particles.v[:] = -0.5 * dt * gravity  # that of t = -dt/2, as nothing but gravity acts at t = 0
     model = Model(
-        grid, particles, basis, law, walls(run, grid), run.duration / steps,
+        grid, particles, basis, law, walls(run, grid), dt,
         Scheme(create(TRANSFERS, run.transfer), deformation=run.deformation),  # type: ignore[arg-type]
         Damping(run.damping, run.damping_kind) if run.damping else None,  # type: ignore[arg-type]
         None if run.smoothing == "none" else create(SMOOTHINGS, run.smoothing),
-        Budget(gravity),
+        Budget(gravity, kinetic(particles)),
     )  # fmt: skip
     return model, steps
 
 
+def steps_of(run: ColumnRun, law: Any) -> int:
+    """Number of steps. Raises ValueError for more than can be done.
+
+    A law that stiffens with s is taken at three times the weight of the column, or at its own bound if that is more:
+    where sand strikes the floor s is some nine times the weight for moments, and the Courant number then 1.5 times
+    what was asked for.
+    """
+    c = law.wave_speed()
+    if hasattr(law, "moduli"):
+        c = max(c, wave(law, 3 * law.rho0 * run.g * run.height))
+    count = run.duration / (run.courant * run.width / run.cells / c) * (1 - 1e-12)
+    if not count < MOST:
+        raise ValueError(f"{count:.3g} steps would be needed, and {MOST:.0e} is the most; mind E, rho0 and courant")
+    whole: int = ceil(count)
+    return max(1, whole)
+
+
 def check(run: ColumnRun) -> None:
     """Raises ValueError for what no column can have: by setting up a small one."""
-    setup(replace(run, cells=2, aspect=7.0))
+    steps_of(run, law_of(run))
+    setup(replace(run, cells=2, aspect=7.0, channel=18.0, courant=0.4, duration=1e-3))
 
 
 def law_of(run: ColumnRun) -> Any:
@@ -124,8 +146,8 @@ def execute(run: ColumnRun, tick: Callable[[float], None] = lambda share: None) 
     kept = Kept(model, steps)
     started, used = time.perf_counter(), time.process_time()
     try:
-        check_time_step(model)
         measure.look(model)
+        check_time_step(model)
         for step in range(1, steps + 1):
             advance(model, gravity)
             if due(step, steps, LOOKS):
@@ -150,7 +172,7 @@ def execute(run: ColumnRun, tick: Callable[[float], None] = lambda share: None) 
         peak_memory_mb=peak_memory(),
         failure=failure,
         environment=environment(),
-        parameters=asdict(model.material),  # type: ignore[call-overload]
+        parameters=asdict(model.material) | {"domain limit": getattr(model.basis, "limit", inf)},  # type: ignore[call-overload]
     )
     return result, arrays
 
@@ -188,9 +210,12 @@ class Kept:
 
 
 def fields(model: Model) -> dict[str, Any]:
-    """Fields of the particles in the initial order, float32: x, v, F, sigma, corners, and the law's memory by name."""
+    """Fields of the particles in the initial order, float32: x, v, F, sigma, m, J, corners, the law's memory by name,
+    and where smoothing gives the forces another stress, that as sigma_felt."""
     p = model.particles
-    found = {name: getattr(p, name) for name in ("x", "v", "F", "sigma")}
+    found = {name: getattr(p, name) for name in ("x", "v", "F", "sigma", "m", "J")}
+    if p.felt.size:
+        found["sigma_felt"] = p.felt
     corners = model.basis.corners(p.x, p.F, p.domain, model.grid.dx)
     if corners is not None:
         found["corners"] = corners

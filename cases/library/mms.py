@@ -123,7 +123,7 @@ def execute(run: Run, tick: Callable[[float], None] = lambda share: None) -> tup
     failure, started, used = None, time.perf_counter(), time.process_time()
     try:
         if not run.force:
-            check_time_step(model)
+            check_time_step(model, " (--force runs it all the same)")
         if comparison.packing:
             comparison.packing.begin(model, refuse=run.layout != "uniform")
         for step in range(steps):

@@ -14,8 +14,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from cases.column_claims import Ran
-from cases.column_exam import Refined
-from cases.column_experiment import experiment
+from cases.column_experiment import Experiment, experiment
+from cases.column_refined import Refined
 from cases.column_run import ColumnRun
 from reports import style
 from solver.state import Floats
@@ -29,15 +29,23 @@ TIME = "time / $\\sqrt{h_0/g}$"
 Labels = Sequence[str]
 
 
+def shared_experiment(ran: Sequence[Ran]) -> Experiment | None:
+    """What is known of the experiment, where all runs are of one size of column."""
+    sizes = {(one.run.width, one.run.aspect, one.run.g) for one in ran}
+    return experiment(ran[0].run) if len(sizes) == 1 else None
+
+
 def fronts(ran: Sequence[Ran], labels: Labels) -> Figure:
     """Where 99 % of the mass lies against time."""
     with rc_context(style.RC):
         figure, axes = panel(xlabel=TIME, ylabel="front, 99 % of the mass [m]")
-        known, run = experiment(ran[0].run), ran[0].run
+        known, run = shared_experiment(ran), ran[0].run
         last = max(float(one.curves["t"][-1]) for one in ran) / run.tau
         if known:
             low, high = known.front
             axes.add_patch(Rectangle((known.rest[0], low), last - known.rest[0], high - low, color=SAND, linewidth=0))
+            for time in known.rest:
+                axes.plot([time, time], [low, high], color=style.GREY, linewidth=1, linestyle=(0, (2, 2)))
             axes.annotate("experiment, at rest", (last, low), xytext=(-4, -4), textcoords="offset points", ha="right",
                           va="top", color=style.GREY, fontsize=10)  # fmt: skip
         for place, (one, label) in enumerate(zip(ran, labels, strict=True)):
@@ -51,7 +59,7 @@ def profiles(ran: Sequence[Ran], labels: Labels) -> Figure:
     """Surfaces at the end, the column there was, and what is known of the experiment's deposit."""
     with rc_context(style.RC):
         figure, axes = panel(xlabel="distance from the wall [m]", ylabel="height [m]")
-        run, known = ran[0].run, experiment(ran[0].run)
+        run, known = ran[0].run, shared_experiment(ran)
         far = 1.05 * max(one.values["front_999"] for one in ran)
         tall = 1.15 * max(float(one.curves["profile"][-1].max()) for one in ran)
         if known:

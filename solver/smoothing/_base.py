@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, get_args
 
 import numpy as np
 
+from solver.model import fail
 from solver.rate_law import RateLaw
 from solver.smoothing._project import project, strained, strains
 from solver.state import Floats, Particles
@@ -83,8 +84,12 @@ class Smoothing:
         return np.stack([parts[:, 0] + parts[:, 1], parts[:, 0] - parts[:, 1], parts[:, 2]], axis=1)
 
     def project(self, model: "Model", x: Floats, values: Floats) -> Floats:
-        """Projected values (P,C), by the volumes of the start of the step."""
+        """Projected values (P,C), by the volumes of the start of the step. Raises RunFailed outside the grid."""
         g, out = model.grid, np.empty_like(values)
+        place = (x - g.origin) / g.dx
+        inside = ((place >= 0) & (place < (g.nx - 1, g.ny - 1))).all(axis=1)  # NaN is not
+        if not inside.all():
+            fail(model, int(np.flatnonzero(~inside)[0]), "a particle is outside the grid")
         nodes = self.where == "node"
         project(x, volumes(model.particles), values, g.origin, 1.0 / g.dx, g.nx, g.ny, nodes, out)
         return out
