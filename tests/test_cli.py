@@ -15,6 +15,7 @@ from typing import Any
 import fixtures_study as fixtures
 import pytest
 
+from cases.column_sweep import shipped
 from cases.library import mms
 from cases.store import Store
 from cases.study import NORMS, QUANTITIES, Result
@@ -267,8 +268,16 @@ def test_list_names_every_plugin(verify: Verify) -> None:
     said = verify("list")
     assert (said.code, said.err) == (0, "")
     listed = {line.split()[0] for line in said.out.splitlines() if line.startswith("  ")}
-    others = ("cases.library", "solver.transfers", "mms.layouts", "solver.rates", "solver.misreadings")
-    assert listed == {*METHODS, *SOLUTIONS, *MATERIALS, *(name for package in others for name in available(package))}
+    others = (
+        "cases.library",
+        "solver.transfers",
+        "solver.smoothing",
+        "mms.layouts",
+        "solver.rates",
+        "solver.misreadings",
+    )
+    plugins = {name for package in others for name in available(package)}
+    assert listed == {*METHODS, *SOLUTIONS, *MATERIALS, *plugins, *shipped()}
     assert all(len(line.split()) > 2 for line in said.out.splitlines() if line.startswith("  "))  # and says what it is
 
 
