@@ -153,15 +153,16 @@ def crowds(family: Sequence[Ran]) -> str:
     crowded = [one for one in family if one.values["crowding"] > CROWDED]
     if not crowded:
         return ""
-    named = ", ".join(f"{one.values['crowding']:.2f} with {told('ppc', one.run.ppc)}" for one in crowded)
-    return f" But particles keep more volume than the space they are in, {named} times: those runs are weak evidence."
+    named = " and ".join(f"{one.values['crowding']:.2f} times with {told('ppc', one.run.ppc)}" for one in crowded)
+    return f" But of the space they are in particles keep {named} as their volume: those runs are weak evidence."
 
 
 def settled(family: Sequence[Ran], found: bool) -> bool | None:
-    """What was found of heights; None where they still change by more than they differ."""
-    gaps = [abs(later.height - earlier.height) for earlier, later in pairwise(family)]
-    moving = max(abs(one.values["creep"]) * one.height for one in family)
-    return found if min(gaps) > moving else None
+    """Whether heights rise; None where one may still fall below the one before."""
+    falls = [
+        later.height - earlier.height < later.values["creep"] * later.height for earlier, later in pairwise(family)
+    ]
+    return None if found and any(falls) else found
 
 
 def falling(family: Sequence[Ran]) -> str:

@@ -54,9 +54,14 @@ def test_particles() -> None:
     assert [claim.reproduced for claim in failed.values()] == [False] * 4
     assert said([ran(ppc=4), ran(ppc=9)], "ppc")["With one per cell the"].reproduced is None
     weak = said([ran(0.7, 0.1, ppc=1, crowding=2.0), ran(0.91, 0.16, ppc=9)], "ppc")
-    assert "2.00 with 1 per cell times: those runs are weak" in weak["Run-out is over-predicted whatever the"].found
-    moving = said([ran(0.7, 0.14, ppc=1, creep=0.2), ran(0.91, 0.16, ppc=9)], "ppc")
+    assert (
+        "2.00 times with 1 per cell as their volume: those runs are weak"
+        in weak["Run-out is over-predicted whatever the"].found
+    )
+    moving = said([ran(0.7, 0.14, ppc=1), ran(0.91, 0.16, ppc=9, creep=0.2)], "ppc")
     assert moving["The final height rises with"].reproduced is None
+    sinking = said([ran(0.7, 0.14, ppc=1, creep=0.2), ran(0.91, 0.16, ppc=9)], "ppc")
+    assert sinking["The final height rises with"].reproduced is True  # it can only become more so
     assert "fell by up to 20.0 %" in moving["The final height rises with"].found
 
 

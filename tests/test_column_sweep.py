@@ -1,5 +1,6 @@
 """Studies from TOML: what ships reads, a product is a product, and what is wrong is one line."""
 
+import re
 from math import inf
 from pathlib import Path
 
@@ -7,6 +8,7 @@ import pytest
 
 from cases.column_run import ColumnRun
 from cases.column_sweep import read, shipped
+from solver.sources import TOP
 
 FIGURES = {f"figure{number}" for number in range(3, 9)}
 
@@ -43,6 +45,13 @@ def test_a_product_without_doubles(tmp_path: Path) -> None:
     ]  # fmt: skip
     assert {(run.ppc, run.limit, run.law) for run in study.runs} == {(1, inf, "ubcsand")}
     assert (study.name, study.title, study.axes, study.finish) == ("own", "own", ("cells", "offset", "law"), 4)
+
+
+def test_the_study_in_readme(tmp_path: Path) -> None:
+    (text,) = re.findall(r"```toml\n(.*?)```", (TOP / "README.md").read_text(), re.DOTALL)
+    study = read(own(tmp_path, text), "")
+    assert len(study.runs) == 6
+    assert {run.law for run in study.runs} == {"mohr_coulomb:phi=33"}
 
 
 @pytest.mark.parametrize(
