@@ -103,10 +103,9 @@ def alive(collapse: Collapse) -> Section:
         "length, a memory of void strain, and an update of F that keeps its determinant. The table says how many "
         "particles they touch: the largest share whose domain is cut, and at the end the share with void strain, and "
         "without any stress, the volume of void per solid, and the extremes of det F.",
-        "A particle with void strain waits for as much compression before it carries again, whether or not there is "
-        "any void around it. Most particles of a heap at rest do so, deep inside too, and the others carry the weight: "
-        "void strain is opened by the noise of velocities, and what opens it is not undone. This is a limitation of "
-        "such a memory, here and in other codes that correct volumes.",
+        "A particle with void strain waits for as much compression before it carries again. Most particles of a heap "
+        "at rest do so, deep inside too, and the others carry the weight, though the heap has no room for so much "
+        "void: det F, which void strain follows, has drifted away from where the particles are, as crowding shows.",
         "Crowding is the volume that particles keep, det F times what they began with, over the space in which they "
         "are: it should be 1. Above it the heap is too small for its material, which the particles do not notice. It "
         "grows as particles are fewer.",
