@@ -138,7 +138,7 @@ class ColumnResult:
 class ColumnStudy:
     """The runs of a sweep; `axes`: names of the fields that it varies; `words`: what the study is for, by its file.
 
-    `finish`: how many runs must come to their end, declared before any runs; a study of what fails asks for fewer.
+    `finish`: how many runs must come to rest, declared before any runs; a study of what fails asks for fewer.
     """
 
     name: str

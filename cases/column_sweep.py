@@ -2,7 +2,7 @@
 
     title = "Run-out against damping"
     words = ["What the study is for.", "A sentence or more."]
-    finish = 4                        # runs that must come to their end; all, unless it is said
+    finish = 4                        # runs that must come to rest; all, unless it is said
 
     [run]                             # fields of cases.column_run.ColumnRun
     ppc = 9
