@@ -104,11 +104,11 @@ def alive(collapse: Collapse) -> Section:
         "particles they touch: the largest share whose domain is cut, and at the end the share with void strain, and "
         "without any stress, the volume of void per solid, and the extremes of det F.",
         "A particle with void strain waits for as much compression before it carries again. Most particles of a heap "
-        "at rest do so, deep inside too, and the others carry the weight, though the heap has no room for so much "
-        "void: det F, which void strain follows, has drifted away from where the particles are, as crowding shows.",
+        "at rest do so, deep inside too: the others carry the weight and hold them apart, and the heap is larger by "
+        "it.",
         "Crowding is the volume that particles keep, det F times what they began with, over the space in which they "
         "are: it should be 1. Above it the heap is too small for its material, which the particles do not notice. It "
-        "grows as particles are fewer.",
+        "grows as particles are fewer, and is 1 with 16 per cell.",
         "Smoothing p or the deviator alone takes stresses out of the cone of friction: the largest share of particles "
         "that the forces see outside it, in the plane, and the worst ratio among those under more than 1 % of the "
         "largest s. The largest s is that of sand striking the floor.",
