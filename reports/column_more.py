@@ -14,6 +14,7 @@ from reports.show import Table
 from reports.words import DASH, percent
 
 FILMS = 8  # of a page
+AXES = {"cells": "cells of the width", "ppc": "particles per cell", "courant": "Courant number"}
 SET_UP = (
     "The paper's Figure 3: the column at its wall (thick), before it is released; right, its free foot with the cells "
     "of the grid, the domains of the particles in layers, and their centres."
@@ -26,7 +27,9 @@ def refinement(collapse: Collapse, add: Add) -> Section:
     heads = ("axis", *(("runs with",) if any(one.runs for one in collapse.refined) else ()))
     for place, (axis, runs) in enumerate(dict.fromkeys((one.axis, one.runs) for one in collapse.refined)):
         series = [one for one in collapse.refined if (one.axis, one.runs) == (axis, runs)]
-        image = add(f"refined_{place}", draw.refined(series, f"{axis}, finer to the right"), f"Refinement in {axis}.")
+        image = add(
+            f"refined_{place}", draw.refined(series, f"{AXES[axis]}, finer to the right"), f"Refinement in {axis}."
+        )
         figures.append(
             (image, f"Refinement in {axis}{f', {runs}' if runs else ''}: each quantity over its finest value.")
         )
@@ -82,7 +85,7 @@ def films(collapse: Collapse, store: Store, add: Add, ran: Sequence[tuple[Column
 
 def alive(collapse: Collapse) -> Section:
     """What scaling, void strain and smoothing do to the runs, failed ones too."""
-    head = ("run", "limit [cells]", "limited domains", "open", "without stress", "void strain", "det F", "crowding",
+    head = ("run", "limit [cells]", "limited domains", "with void strain", "without stress", "void strain", "det F", "crowding",
             "outside the cone", "worst t/(s sin φ)", "largest s / ρgh₀", "fastest particle [m/s]", "Courant number",
             "steps", "CPU [s]", "million updates a second")  # fmt: skip
     rows = []

@@ -110,8 +110,7 @@ def motion(collapse: Collapse, add: Add) -> Section:
     ran, labels = collapse.ran, [collapse.label(one.run) for one in collapse.ran]
     return Section("motion", "Run-out", figures=[
         (add("front", draw.fronts(ran, labels), "Front against time; its final values are in the table of runs."),
-         "Front against normalised time. Shaded: where the experiment's front rests, from times between the dashes "
-         "on."),
+         "Front against normalised time. Shaded: where the experiment's front rests; dashes: the times of that."),
         (add("profiles", draw.profiles(ran, labels), "Surface of the heap at the end of each run."),
          "The surface at the end. Shaded: front and height of the experiment; dashed: the column's free side."),
     ])  # fmt: skip

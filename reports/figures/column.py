@@ -3,6 +3,7 @@
 The band of the experiment is shaded where it is known; it is no curve. Time is counted in sqrt(h0/g).
 """
 
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -204,7 +205,8 @@ def refined(series: Sequence[Refined], xlabel: str) -> Figure:
             values = np.array([value for _, value in one.levels])
             axes.plot(range(len(values)), values / values[0], marker=style.MARKERS[place % len(style.MARKERS)],
                       label=one.quantity, **stroke(place))  # fmt: skip
-        axes.set_xticks(range(len(series[0].levels)), [name for name, _ in series[0].levels])
+        numbers = [re.sub(r"[^\d.]", "", name) for name, _ in series[0].levels]  # the axis says of what
+        axes.set_xticks(range(len(numbers)), numbers)
         axes.invert_xaxis()
         legend(figure, [one.quantity for one in series])
     return figure
