@@ -85,9 +85,9 @@ def films(collapse: Collapse, store: Store, add: Add, ran: Sequence[tuple[Column
 
 def alive(collapse: Collapse) -> Section:
     """What scaling, void strain and smoothing do to the runs, failed ones too."""
-    head = ("run", "limit [cells]", "limited domains", "with void strain", "without stress", "void strain", "det F", "crowding",
-            "outside the cone", "worst t/(s sin φ)", "largest s / ρgh₀", "fastest particle [m/s]", "Courant number",
-            "steps", "CPU [s]", "million updates a second")  # fmt: skip
+    head = ("run", "limit [cells]", "limited domains", "with void strain", "without stress", "void strain", "det F",
+            "crowding", "outside the cone", "worst t/(s sin φ)", "largest s / ρgh₀", "fastest particle [m/s]",
+            "Courant number", "steps", "CPU [s]", "million updates a second")  # fmt: skip
     rows = []
     for run in collapse.study.runs:
         result = collapse.results.get(run.digest)
