@@ -81,10 +81,11 @@ class Measure:
         """
         p, law = model.particles, model.material
         if hasattr(law, "stored"):
-            elastic = float(p.V0 * p.J @ law.stored(p.sigma))
+            elastic = float((p.V0 * p.J * law.stored(p.sigma)).sum())
             return {"elastic": elastic, "plastic": work - elastic}
         now = worked(model)
-        self.plastic += float((p.in_initial_order("V0") * p.in_initial_order("J")) @ (now - self.worked))
+        volume = p.in_initial_order("V0") * p.in_initial_order("J")
+        self.plastic += float((volume * (now - self.worked)).sum())
         self.worked = now
         return {"elastic": work - self.plastic, "plastic": self.plastic}
 
@@ -105,7 +106,7 @@ def wave(law: Any, s: float) -> float:
 
 def momentum(model: Model) -> Floats:
     """Of all particles (2,)."""
-    total: Floats = model.particles.m @ model.particles.v
+    total: Floats = (model.particles.m[:, None] * model.particles.v).sum(axis=0)
     return total
 
 
