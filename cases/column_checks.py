@@ -14,10 +14,10 @@ from math import sqrt
 
 from cases.checks import Check, Way
 from cases.column_claims import Ran, shared
-from cases.column_run import ColumnRun, ColumnStudy
+from cases.column_run import AT_REST, ColumnRun, ColumnStudy
 
 SHARE = "over the potential energy at first"
-BUDGET, AT_REST, DRIFT, BACK = 0.01, 1e-4, 1e-9, 1e-3
+BUDGET, DRIFT, BACK = 0.01, 1e-9, 1e-3
 MASS, STABLE = 1e-12, 0.95
 JUMPS = "mpm"  # method whose weights have gradients that jump
 LONG = 0.7  # cells, half diagonal of a domain

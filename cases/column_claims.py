@@ -117,12 +117,17 @@ def beyond(value: float, band: tuple[float, float]) -> float:
 
 def fronts(family: Sequence[Ran], axis: str) -> str:
     """`0.902 m with 1 per cell, ...`."""
-    return ", ".join(f"{one.front:.3f} m with {told(axis, getattr(one.run, axis))}" for one in family)
+    return listed(family, axis, lambda one: one.front)
 
 
 def heights(family: Sequence[Ran], axis: str) -> str:
     """`0.08 m with 1 per cell, ...`."""
-    return ", ".join(f"{one.height:.3f} m with {told(axis, getattr(one.run, axis))}" for one in family)
+    return listed(family, axis, lambda one: one.height)
+
+
+def listed(family: Sequence[Ran], axis: str, length: Callable[[Ran], float]) -> str:
+    """A length of each run, with what the run has on the axis."""
+    return ", ".join(f"{length(one):.3f} m with {told(axis, getattr(one.run, axis))}" for one in family)
 
 
 def band(limits: tuple[float, float]) -> str:

@@ -14,12 +14,11 @@ from typing import Any
 import numpy as np
 from scipy import ndimage
 
-from cases.column_run import ColumnRun
+from cases.column_run import AT_REST, ColumnRun
 from solver.diagnostics import residual
 from solver.state import Floats
 from solver.step import Model
 
-STRIPS = 7  # of the width
 SHARE = 0.99
 SLACK = 1e-6  # of the largest stress: what round-off may pass the strength by
 
@@ -29,8 +28,7 @@ class Measure:
 
     def __init__(self, run: ColumnRun, model: Model) -> None:
         self.run, self.end = run, float(model.grid.upper[0])
-        self.strip = run.width / min(STRIPS, run.cells)
-        self.strips = round(self.end / self.strip)
+        self.strips = round(self.end / run.strip)
         self.first: dict[str, float] = {}
         self.rows: list[dict[str, float]] = []
         self.profiles: list[Floats] = []
@@ -45,8 +43,8 @@ class Measure:
     def look(self, model: Model) -> None:
         """One row."""
         p, x = model.particles, self.places(model)
-        heap = connected(x, self.strip)
-        profile = surface(x[heap], p.m[heap], self.strip, self.strips)
+        heap = connected(x, self.run.strip)
+        profile = surface(x[heap], p.m[heap], self.run.strip, self.strips)
         assert model.budget
         terms = model.budget.terms(model)
         self.first = self.first or terms
@@ -67,7 +65,7 @@ class Measure:
             "fastest": float(np.hypot(*p.v.T).max()),
             **strength(model),
             **scaled(model),
-            "crowding": crowding(x, p.V0 * p.J, self.strip),
+            "crowding": crowding(x, p.V0 * p.J, self.run.strip),
         }
         row["courant"] = model.dt / model.grid.dx * (wave(model.material, row["largest_s"]) + row["fastest"])
         self.rows.append(row)
@@ -98,10 +96,7 @@ class Measure:
 
 def wave(law: Any, s: float) -> float:
     """Speed of the compression wave; of a law that stiffens with s, under the largest s there is."""
-    if not hasattr(law, "moduli"):
-        return float(law.wave_speed())
-    G, K = law.moduli(s)
-    return float(np.sqrt((K + 4 / 3 * G) / law.rho0))
+    return float(law.wave_speed(s) if hasattr(law, "moduli") else law.wave_speed())
 
 
 def momentum(model: Model) -> Floats:
@@ -203,7 +198,7 @@ def scaled(model: Model) -> dict[str, float]:
 def final(run: ColumnRun, curves: dict[str, Floats]) -> dict[str, float]:
     """Numbers of a run: those at its end, the largest of some, and when it came to rest.
 
-    `rest`: since when the kinetic energy of the grid is below 1e-4 of the potential energy there was; inf if it is not.
+    `rest`: since when the kinetic energy of the grid is below AT_REST of the potential energy; inf if it is not.
     `area`: under the final profile, over that of the column: 1 and what it has dilated, or less where it has shrunk.
     Shares of the potential energy there was, largest at any time: `unbalanced`, of the budget; `misworked`, between the
     work of the law and that of the forces; `lost` by the method; `plastic_falls`, that plastic work gave back.
@@ -224,7 +219,7 @@ def final(run: ColumnRun, curves: dict[str, Floats]) -> dict[str, float]:
     ):
         values[f"most_{name}"] = float(curves[name].max())
     first = float(curves["potential"][0])
-    moving = np.flatnonzero(curves["on_grid"] > 1e-4 * first)
+    moving = np.flatnonzero(curves["on_grid"] > AT_REST * first)
     last = int(moving[-1]) if len(moving) else 0
     t, height = curves["t"], curves["height"]
     values["rest"] = float(t[last + 1]) if last + 1 < len(t) else inf
@@ -235,6 +230,5 @@ def final(run: ColumnRun, curves: dict[str, Floats]) -> dict[str, float]:
     values["lost"] = float(np.abs(curves["transfer"] + curves["convection"]).max()) / first
     values["plastic_falls"] = float((np.maximum.accumulate(plastic) - plastic).max()) / first
     values["run_out"] = values["front_99"] / run.width - 1
-    strip = run.width / min(STRIPS, run.cells)
-    values["area"] = float(curves["profile"][-1].sum()) * strip / (run.width * run.height)
+    values["area"] = float(curves["profile"][-1].sum()) * run.strip / (run.width * run.height)
     return values

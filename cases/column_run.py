@@ -14,6 +14,8 @@ from solver.sources import TOP, digest
 Start = Literal["none", "k0", "oedometric"]
 Wall = Literal["roller", "fixed"]
 MOST = 1000  # cells: 4 GB of grid
+STRIPS = 7  # of the width
+AT_REST = 1e-4  # kinetic energy of the grid, of the potential energy at first: a run below it rests
 PARTS = ("column_run", "column_start", "column_measure", "memory", "study")
 
 
@@ -85,6 +87,11 @@ class ColumnRun:
     def height(self) -> float:
         """Of the column at first."""
         return self.width * self.aspect
+
+    @property
+    def strip(self) -> float:
+        """Width of the strips of a profile: a seventh of the column's, on any grid whose cells are no wider."""
+        return self.width / min(STRIPS, self.cells)
 
     @property
     def tau(self) -> float:

@@ -22,22 +22,17 @@ from typing import Any, get_type_hints
 from pydantic import TypeAdapter, ValidationError
 
 from cases.column_run import ColumnRun, ColumnStudy
+from cases.shipped import STUDIES, shipped
 
-SHIPPED = Path(__file__).with_name("studies")
 ALLOWED = tuple(item.name for item in fields(ColumnRun) if item.name != "case")
 PARTS = ("title", "words", "finish", "run", "sweep")
 MOST = 1000  # runs of a study: more is a slip of the pen
 READ: dict[str, TypeAdapter[Any]] = {name: TypeAdapter(kind) for name, kind in get_type_hints(ColumnRun).items()}
 
 
-def shipped() -> list[str]:
-    """Names of the studies that ship with the project."""
-    return sorted(file.stem for file in SHIPPED.glob("*.toml"))
-
-
 def read(source: str, command: str) -> ColumnStudy:
     """The study of a file, or of a shipped name. Raises ValueError with one line for what is wrong with it."""
-    path = Path(source) if source.endswith(".toml") else SHIPPED / f"{source}.toml"
+    path = Path(source) if source.endswith(".toml") else STUDIES / f"{source}.toml"
     if not source.endswith(".toml") and source not in shipped():
         raise ValueError(f"no study {source!r}; choose from {', '.join(shipped())}, or give a file: path/to/own.toml")
     try:

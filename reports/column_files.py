@@ -6,6 +6,7 @@ import pandas as pd
 
 from cases.column_claims import told
 from cases.column_exam import Collapse
+from cases.column_exam import curves as read_curves
 from cases.store import Store
 from reports.vtk import write_series
 
@@ -21,9 +22,7 @@ def tables(collapse: Collapse, store: Store, folder: Path) -> None:
             rows.append(
                 {"digest": run.digest, **parameters, "status": result.status, "failure": failure, **result.values}
             )
-            arrays = store.arrays(result.digest)
-            columns = {name[6:]: values for name, values in arrays.items()
-                       if name.startswith("curve_") and values.ndim == 1}  # fmt: skip
+            columns = {name: values for name, values in read_curves(store, result).items() if values.ndim == 1}
             curves.append(
                 pd.DataFrame({"digest": run.digest, **{n: told(n, getattr(run, n)) for n in parameters}, **columns})
             )

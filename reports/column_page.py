@@ -12,6 +12,7 @@ from reports.examined import Section, checks_table, render
 from reports.figures import column as draw
 from reports.page import Add
 from reports.show import Table
+from reports.stored import held
 from reports.words import DASH, percent
 
 WORDS = {True: "reproduced", False: "not reproduced", None: "cannot be told"}
@@ -34,14 +35,7 @@ def read(folder: Path) -> tuple[Collapse, Store]:
     """What the folder holds; results of earlier sources where there are none of these. Raises StoreError."""
     store = Store(folder, "column")
     study = store.study()
-    results = {run.digest: result for run in study.runs if (result := store.get(run.digest))}
-    if not results:
-        stored = [
-            store.get(file.stem) for file in sorted(store.runs.glob("*.json"), key=lambda f: f.stat().st_mtime_ns)
-        ]
-        by_run = {result.run: result for result in stored}
-        results = {run.digest: by_run[run] for run in study.runs if run in by_run}
-    return look(study, results, store), store
+    return look(study, held(store, study)[0], store), store
 
 
 def sections(collapse: Collapse, store: Store, add: Add) -> Sequence[Section]:

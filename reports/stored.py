@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 from cases.axes import NOT_RUN, level, middle, replicated
 from cases.series import Series, collect
@@ -84,12 +85,17 @@ def read(folder: Path) -> Record:
     """The Record of a study folder. Raises StoreError if the folder is none or is broken."""
     store = Store(folder)
     study = store.study()
+    return Record(store, study, *held(store, study))
+
+
+def held(store: Store, study: Any) -> tuple[dict[str, Any], bool]:
+    """Results of a study of any case by digest, and whether they are all of earlier sources, as there are no others."""
     exact = {run.digest: result for run in study.runs if (result := store.get(run.digest))}
     if exact:
-        return Record(store, study, exact, earlier=False)
+        return exact, False
     old = {result.run: result for result in _all(store)}
     found = {run.digest: old[run] for run in study.runs if run in old}
-    return Record(store, study, found, earlier=bool(found))
+    return found, bool(found)
 
 
 def _all(store: Store) -> Iterator[Result]:

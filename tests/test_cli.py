@@ -15,8 +15,8 @@ from typing import Any
 import fixtures_study as fixtures
 import pytest
 
-from cases.column_sweep import shipped
 from cases.library import mms
+from cases.shipped import shipped
 from cases.store import Store
 from cases.study import NORMS, QUANTITIES, Result
 from solver.plugins import available

@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from cases.column_run import ColumnRun
-from cases.column_sweep import read, shipped
+from cases.column_sweep import read
+from cases.shipped import shipped
 from solver.sources import TOP
 
 FIGURES = {f"figure{number}" for number in range(3, 9)}

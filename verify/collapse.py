@@ -2,12 +2,12 @@
 
 import json
 from dataclasses import asdict, dataclass
-from math import isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import typer
 
+from verify.options import check_count
 from verify.output import printing
 
 if TYPE_CHECKING:
@@ -36,10 +36,8 @@ def conduct(study: "ColumnStudy", folder: Path, jobs: int | None, threads: int, 
         from cases.store import Store
 
         check_junit(wanted.junit)
-        if jobs is not None and jobs < 1:
-            raise ValueError("--jobs takes whole numbers from 1 on")
-        if threads < 1:
-            raise ValueError("--threads takes whole numbers from 1 on")
+        check_count(jobs, "--jobs")
+        check_count(threads, "--threads")
         store = Store(folder, "column")
         with store.locked():
             store.create(study)
@@ -59,7 +57,7 @@ def conduct(study: "ColumnStudy", folder: Path, jobs: int | None, threads: int, 
 
 def document(collapse: "Collapse", made: Path) -> str:
     """One JSON document: runs with their numbers, the paper's sentences, the checks; null for what is not finite."""
-    from verify.examine import told
+    from verify.examine import finite, told
 
     examination, results = collapse.examination, collapse.results
     runs = []
@@ -82,15 +80,6 @@ def document(collapse: "Collapse", made: Path) -> str:
         "report": str(made),
     }
     return json.dumps(content, indent=1, allow_nan=False, ensure_ascii=False)
-
-
-def finite(value: Any) -> Any:
-    """The same with None for numbers that JSON has no word for."""
-    if isinstance(value, dict):
-        return {key: finite(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [finite(item) for item in value]
-    return None if isinstance(value, float) and not isfinite(value) else value
 
 
 def show(collapse: "Collapse", made: Path) -> None:

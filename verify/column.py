@@ -11,6 +11,7 @@ import typer
 
 from solver.plugins import MATERIALS, METHODS, SMOOTHINGS, TRANSFERS
 from verify.choices import choices, completion
+from verify.options import Json, Junit, Vtk
 
 
 def column(
@@ -51,13 +52,11 @@ def column(
     aspect: Annotated[float, typer.Option(help="Height over width.")] = 7.0,
     channel: Annotated[float, typer.Option(help="Length of the channel, in widths.")] = 18.0,
     g: Annotated[float, typer.Option(help="m/s2; the paper has 10.")] = 10.0,
-    vtk: Annotated[bool, typer.Option("--vtk", help="Write snapshots for ParaView.")] = False,
+    vtk: Vtk = False,
     threads: Annotated[int, typer.Option(help="Threads of the run.")] = 1,
     out: Annotated[Path, typer.Option(help="Folder of the study.")] = Path("results/column"),
-    json_output: Annotated[
-        bool, typer.Option("--json", help="One JSON document on standard output, nothing else.")
-    ] = False,
-    junit: Annotated[Path | None, typer.Option(help="Write the checks as JUnit XML.")] = None,
+    json_output: Json = False,
+    junit: Junit = None,
 ) -> int:
     """Let a column of sand collapse: front, height, profile, energies, an animation."""
     given = dict(locals())

@@ -74,8 +74,16 @@ def document(examination: Examination, page: Path) -> str:
 
 def told(check: Check) -> dict[str, Any]:
     """A check for JSON."""
-    found = {key: None if isinstance(v, float) and not isfinite(v) else v for key, v in asdict(check).items()}
-    return {**found, "outcome": str(check.outcome)}
+    return {**finite(asdict(check)), "outcome": str(check.outcome)}
+
+
+def finite(value: Any) -> Any:
+    """The same with None for numbers that JSON has no word for."""
+    if isinstance(value, dict):
+        return {key: finite(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [finite(item) for item in value]
+    return None if isinstance(value, float) and not isfinite(value) else value
 
 
 def show(examination: Examination, page: Path) -> None:

@@ -10,6 +10,7 @@ import typer
 from solver.plugins import METHODS, SOLUTIONS
 from verify.choices import choices, completion, integers
 from verify.mms import repeatable
+from verify.options import Jobs, Json, check_count
 
 if TYPE_CHECKING:
     from cases.graded_study import Plan
@@ -38,11 +39,9 @@ def graded(
         float, typer.Option(help="Particles per length where strain is largest, over those where there is none.")
     ] = 2.0,
     power: Annotated[float, typer.Option(help="Of the strain that particles per length follow.")] = 0.25,
-    jobs: Annotated[int | None, typer.Option(help="Runs at a time.", show_default="processors")] = None,
+    jobs: Jobs = None,
     out: Annotated[Path | None, typer.Option(help="Study folder.", show_default="results/graded")] = None,
-    json_output: Annotated[
-        bool, typer.Option("--json", help="One JSON document on standard output, nothing else.")
-    ] = False,
+    json_output: Json = False,
 ) -> int:
     """Error against cost of uniform, graded and thinned layouts. Nothing is judged: exit code 3."""
     from verify.conduct import Settings, conduct, usage
@@ -60,8 +59,7 @@ def graded(
             power,
         )
         study = build_graded(plan, "verify " + shlex.join(repeatable(sys.argv[1:])), name(plan))
-        if jobs is not None and jobs < 1:
-            raise ValueError("--jobs takes whole numbers from 1 on")
+        check_count(jobs, "--jobs")
     folder = out or Path("results") / study.name
     code = conduct(study, Settings(folder, jobs, 1, json_output))
     if not json_output:

@@ -1,10 +1,10 @@
 """`verify list`: what there is to choose from. Reads file names and docstrings, imports nothing."""
 
 import ast
-import tomllib
 
 import typer
 
+from cases.shipped import shipped, title
 from solver.plugins import (
     CASES,
     KINDS,
@@ -20,7 +20,6 @@ from solver.plugins import (
     folder,
 )
 from verify.output import printing
-from verify.sweep import STUDIES, names
 
 PACKAGES = (CASES, METHODS, TRANSFERS, SMOOTHINGS, LAYOUTS, SOLUTIONS, MATERIALS, RATES, MISREADINGS)
 REMARKS = {RATES: " (of the laws in rate form)", MISREADINGS: " (negative controls, taken as a rate)"}
@@ -35,13 +34,8 @@ def list_plugins() -> None:
             for name in available(package):
                 typer.echo(f"  {name:20}{summary(package, name)}")
         typer.echo("studies of the column (verify sweep)")
-        for name in names():
+        for name in shipped():
             typer.echo(f"  {name:20}{title(name)}")
-
-
-def title(study: str) -> str:
-    """What a study calls itself."""
-    return str(tomllib.loads((STUDIES / f"{study}.toml").read_text(encoding="utf-8"))["title"])
 
 
 def summary(package: str, name: str) -> str:

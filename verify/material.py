@@ -9,6 +9,7 @@ import typer
 
 from solver.plugins import MATERIALS
 from verify.choices import choices, completion
+from verify.options import Json, Junit
 
 if TYPE_CHECKING:
     from cases.element_paths import ElementTest
@@ -44,10 +45,8 @@ def material(
     out: Annotated[
         Path | None, typer.Option(help="Folder of the result.", show_default="results/material-NAME")
     ] = None,
-    json_output: Annotated[
-        bool, typer.Option("--json", help="One JSON document on standard output, nothing else.")
-    ] = False,
-    junit: Annotated[Path | None, typer.Option(help="Write the checks as JUnit XML.")] = None,
+    json_output: Json = False,
+    junit: Junit = None,
 ) -> int:
     """Drive one element of a law through compression and shear: curves, errors, orders, tables of known values."""
     from verify.conduct import usage

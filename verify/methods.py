@@ -10,6 +10,7 @@ import typer
 from solver.plugins import METHODS
 from verify.choices import choices, completion, integers
 from verify.mms import repeatable
+from verify.options import Jobs, Json, check_count
 
 
 def methods(
@@ -21,11 +22,9 @@ def methods(
     ] = None,
     ppc: Annotated[str, typer.Option(help="Particles per cell, square numbers.")] = "4",
     quick: Annotated[bool, typer.Option("--quick", help="The bar alone, on up to 64 cells.")] = False,
-    jobs: Annotated[int | None, typer.Option(help="Runs at a time.", show_default="processors")] = None,
+    jobs: Jobs = None,
     out: Annotated[Path | None, typer.Option(help="Study folder.", show_default="results/methods")] = None,
-    json_output: Annotated[
-        bool, typer.Option("--json", help="One JSON document on standard output, nothing else.")
-    ] = False,
+    json_output: Json = False,
     junit: Annotated[Path | None, typer.Option(help="Write the verdicts as JUnit XML.")] = None,
 ) -> int:
     """All methods on seven solutions: orders, verdicts, and the error that each reaches at which cost."""
@@ -40,6 +39,5 @@ def methods(
         name = "-".join(["methods", *(chosen if method else ()), *(["quick"] if quick else [])])
         name += f"-ppc-{ppc.replace(',', '-')}" if ppc != "4" else ""
         study = build_methods(comparison, "verify " + shlex.join(repeatable(sys.argv[1:])), name)
-        if jobs is not None and jobs < 1:
-            raise ValueError("--jobs takes whole numbers from 1 on")
+        check_count(jobs, "--jobs")
     return conduct(study, Settings(out or Path("results") / study.name, jobs, 1, json_output, junit, compare=True))

@@ -11,6 +11,7 @@ import typer
 from solver.orders import Stress
 from solver.plugins import LAYOUTS, MATERIALS, METHODS, SOLUTIONS, TRANSFERS
 from verify.choices import choices, completion, integers
+from verify.options import Json
 
 USUAL = {"cells": "8,16,32,64,128", "ppc": "1,4,9"}
 QUICK = {"cells": "8,12,16,24,32", "ppc": "4"}
@@ -84,9 +85,7 @@ def mms(
     quick: Annotated[bool, typer.Option("--quick", help="8,12,16,24,32 cells with 4 particles each.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Run time steps above the stability limit too.")] = False,
     out: Annotated[Path | None, typer.Option(help="Study folder.", show_default="results/NAME-OF-THE-STUDY")] = None,
-    json_output: Annotated[
-        bool, typer.Option("--json", help="One JSON document on standard output, nothing else.")
-    ] = False,
+    json_output: Json = False,
     junit: Annotated[Path | None, typer.Option(help="Write the verdicts as JUnit XML.")] = None,
 ) -> int:
     """Convergence of MPM and CPDI to a manufactured solution: errors, observed orders, verdict, HTML report."""

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from verify.options import Jobs, Json, Junit, check_count
+
 if TYPE_CHECKING:
     from cases.checks import Examination
     from cases.turning_block import Block
@@ -16,12 +18,10 @@ if TYPE_CHECKING:
 def objectivity(
     cells: Annotated[int, typer.Option(help="Cells along a side of the block, from 4 on.")] = 8,
     ppc: Annotated[int, typer.Option(help="Particles per cell, a square number.")] = 4,
-    jobs: Annotated[int | None, typer.Option(help="Runs at a time.", show_default="processors")] = None,
+    jobs: Jobs = None,
     out: Annotated[Path, typer.Option(help="Folder of the result.")] = Path("results/objectivity"),
-    json_output: Annotated[
-        bool, typer.Option("--json", help="One JSON document on standard output, nothing else.")
-    ] = False,
-    junit: Annotated[Path | None, typer.Option(help="Write the checks as JUnit XML.")] = None,
+    json_output: Json = False,
+    junit: Junit = None,
 ) -> int:
     """Turn a block under gravity by 90 degrees, and follow objective rates and wrong readings of them."""
     from reports.objectivity_page import page
@@ -32,8 +32,7 @@ def objectivity(
         from cases.turning_block import Block
 
         block = Block(cells=cells, ppc=ppc)
-        if jobs is not None and jobs < 1:
-            raise ValueError("--jobs takes whole numbers from 1 on")
+        check_count(jobs, "--jobs")
     command = "verify " + shlex.join(sys.argv[1:])
     return conduct(lambda: compute(block, jobs or os.cpu_count() or 1, command), page, out, json_output, junit)
 

@@ -9,7 +9,7 @@ The paper leaves open, and this is our choice, each a parameter of ColumnRun:
     start    the gate is gone at once
     end      a wall at the end of the channel, 18 widths away, and none above
 A cohesionless column of CPDI particles does not survive the plain scheme. What keeps it alive: the exponential update
-of F (Scheme.deformation), domains no longer than a cell (solver/basis/cpdi.py) and void-strain memory of the law
+of F (Scheme.deformation), domains of limited length (solver/basis/cpdi.py) and void-strain memory of the law
 (solver/voids.py).
 """
 

@@ -75,8 +75,7 @@ def profiles(ran: Sequence[Ran], labels: Labels) -> Figure:
         axes.plot([run.width, run.width], [0, tall], color=style.GREY, linewidth=1, linestyle=(0, (2, 2)))
         for place, (one, label) in enumerate(zip(ran, labels, strict=True)):
             height = one.curves["profile"][-1]
-            step = one.run.width * one.run.channel / len(height)
-            axes.plot((np.arange(len(height)) + 0.5) * step, height, label=label, **stroke(place))
+            axes.plot((np.arange(len(height)) + 0.5) * one.run.strip, height, label=label, **stroke(place))
         axes.set(xlim=(0, far), ylim=(0, tall))
         legend(figure, labels)
     return figure

@@ -232,9 +232,9 @@ class Ubcsand(RateLaw):
         history[:, 0] = np.clip(np.divide(t, s, out=np.zeros(len(s)), where=s > 0), 0, self.eta_f)
         return history
 
-    def wave_speed(self) -> float:
-        """Compression wave sqrt((K + 4G/3)/rho0) at s_bound."""
-        G, K = self.moduli(self.s_bound)
+    def wave_speed(self, s: float | None = None) -> float:
+        """Compression wave sqrt((K + 4G/3)/rho0) at s, s_bound if it is left out."""
+        G, K = self.moduli(self.s_bound if s is None else s)
         return sqrt((K + 4 / 3 * G) / self.rho0)
 
 
