@@ -105,6 +105,14 @@ def legend(figure: Figure, methods: Sequence[str], series: Sequence[tuple[str, i
     figure.legend(handles=handles, loc="outside lower center", ncols=columns, **{**usual, **tight})
 
 
+def panel(size: tuple[float, float], **settings: Any) -> tuple[Figure, Axes]:
+    """A figure of one panel, in inches."""
+    figure = Figure(figsize=size, layout="constrained")
+    axes = figure.subplots()
+    axes.set(**settings)
+    return figure, axes
+
+
 def error_axis(axes: Axes) -> None:
     """Ticks of a logarithmic axis of errors, also where it spans less than a decade."""
     low, high = axes.get_ylim()

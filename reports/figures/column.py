@@ -21,7 +21,8 @@ from cases.column_run import ColumnRun
 from reports import style
 from solver.state import Floats
 
-WIDE, HIGH = 5.4, 4.4
+WIDE = 5.4
+SIZE = WIDE, 4.4
 SAND = "#e8d5a3"
 DARK, PALE = "#4a3728", "#d9bf86"  # bands of sand, as in the experiment
 BANDS = 10  # of the column's height
@@ -39,7 +40,7 @@ def shared_experiment(ran: Sequence[Ran]) -> Experiment | None:
 def fronts(ran: Sequence[Ran], labels: Labels) -> Figure:
     """Where 99 % of the mass lies against time."""
     with rc_context(style.RC):
-        figure, axes = panel(xlabel=TIME, ylabel="front, 99 % of the mass [m]")
+        figure, axes = style.panel(SIZE, xlabel=TIME, ylabel="front, 99 % of the mass [m]")
         known, run = shared_experiment(ran), ran[0].run
         last = max(float(one.curves["t"][-1]) for one in ran) / run.tau
         if known:
@@ -59,7 +60,7 @@ def fronts(ran: Sequence[Ran], labels: Labels) -> Figure:
 def profiles(ran: Sequence[Ran], labels: Labels) -> Figure:
     """Surfaces at the end, the column there was, and what is known of the experiment's deposit."""
     with rc_context(style.RC):
-        figure, axes = panel(xlabel="distance from the wall [m]", ylabel="height [m]")
+        figure, axes = style.panel(SIZE, xlabel="distance from the wall [m]", ylabel="height [m]")
         run, known = ran[0].run, shared_experiment(ran)
         far = 1.05 * max(one.values["front_999"] for one in ran)
         tall = 1.15 * max(float(one.curves["profile"][-1].max()) for one in ran)
@@ -84,7 +85,7 @@ def profiles(ran: Sequence[Ran], labels: Labels) -> Figure:
 def energy(ran: Sequence[Ran], labels: Labels, name: str) -> Figure:
     """An energy of each run over the potential energy there was."""
     with rc_context(style.RC):
-        figure, axes = panel(xlabel=TIME, ylabel=f"{name} energy / initial potential energy")
+        figure, axes = style.panel(SIZE, xlabel=TIME, ylabel=f"{name} energy / initial potential energy")
         for place, (one, label) in enumerate(zip(ran, labels, strict=True)):
             share = one.curves[name] / one.curves["potential"][0]
             axes.plot(one.curves["t"] / one.run.tau, share, label=label, **stroke(place))
@@ -101,7 +102,7 @@ def budget(one: Ran) -> Figure:
         "damping": c["damping"], "walls": -c["walls"], "lost by the method": c["transfer"] + c["convection"],
     }  # fmt: skip
     with rc_context(style.RC):
-        figure, axes = panel(xlabel=TIME, ylabel="share of the initial potential energy")
+        figure, axes = style.panel(SIZE, xlabel=TIME, ylabel="share of the initial potential energy")
         below, t, shown = np.zeros_like(c["t"]), c["t"] / one.run.tau, []
         for (name, layer), colour in zip(layers.items(), style.COLOURS, strict=False):
             above = below + layer / start
@@ -199,7 +200,7 @@ def domains(
 def refined(series: Sequence[Refined], xlabel: str) -> Figure:
     """Each quantity over its finest value, against the spacing, a mark a level."""
     with rc_context(style.RC):
-        figure, axes = panel(xlabel=xlabel, ylabel="value over that of the finest level")
+        figure, axes = style.panel(SIZE, xlabel=xlabel, ylabel="value over that of the finest level")
         for place, one in enumerate(series):
             values = np.array([value for _, value in one.levels])
             axes.plot(range(len(values)), values / values[0], marker=style.MARKERS[place % len(style.MARKERS)],
@@ -209,14 +210,6 @@ def refined(series: Sequence[Refined], xlabel: str) -> Figure:
         axes.invert_xaxis()
         legend(figure, [one.quantity for one in series])
     return figure
-
-
-def panel(**settings: Any) -> tuple[Figure, Axes]:
-    """A figure of one panel."""
-    figure = Figure(figsize=(WIDE, HIGH), layout="constrained")
-    axes = figure.subplots()
-    axes.set(**settings)
-    return figure, axes
 
 
 def stroke(place: int) -> dict[str, Any]:

@@ -73,9 +73,7 @@ def errors(curves: Mapping[str, Curve], names: Mapping[str, str]) -> Figure:
 
 
 def _panel(xlabel: str, ylabel: str) -> tuple[Figure, Axes]:
-    figure = Figure(figsize=SIZE, layout="constrained")
-    axes = figure.subplots()
-    axes.set(xlabel=xlabel, ylabel=ylabel)
+    figure, axes = style.panel(SIZE, xlabel=xlabel, ylabel=ylabel)
     axes.ticklabel_format(style="plain", useOffset=False)
     axes.locator_params(axis="x", nbins=5)
     return figure, axes

@@ -1,11 +1,9 @@
 """The paper's Figure 2 and what belongs to it: stress of a turned block, its inertial share, orders, rates in shear."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import numpy as np
 from matplotlib import rc_context
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
@@ -16,17 +14,9 @@ from solver.state import Floats
 Curve = Mapping[str, Floats]
 LABELS = {"xx": "\N{GREEK SMALL LETTER SIGMA}$_{xx}$", "yy": "\N{GREEK SMALL LETTER SIGMA}$_{yy}$",
           "xy": "\N{GREEK SMALL LETTER SIGMA}$_{xy}$"}  # fmt: skip
-WIDE, HIGH = 5.4, 4.6
+WIDE, HIGH = SIZE = 5.4, 4.6
 SPARSE = 12  # samples between two marks
 UNSEEN = 0.02  # of |sigma_v|: misreadings that miss by less lie on the line
-
-
-def _panel(**settings: Any) -> tuple[Figure, Axes]:
-    """A figure of one panel."""
-    figure = Figure(figsize=(WIDE, HIGH), layout="constrained")
-    axes = figure.subplots()
-    axes.set(**settings)
-    return figure, axes
 
 
 def stresses(exact: Curve, blocks: Mapping[str, Curve], wave: Curve | None = None) -> Figure:
@@ -58,7 +48,7 @@ def stresses(exact: Curve, blocks: Mapping[str, Curve], wave: Curve | None = Non
 def co_rotated(runs: Mapping[str, Curve]) -> Figure:
     """Shear stress as the turning box sees it: the mean, and the largest of a particle."""
     with rc_context(style.RC):
-        figure, axes = _panel(xlabel="time [s]", ylabel="|co-rotated shear stress| / |σ$_v$|", xlim=(1, 2))
+        figure, axes = style.panel(SIZE, xlabel="time [s]", ylabel="|co-rotated shear stress| / |σ$_v$|", xlim=(1, 2))
         for place, (label, curve) in enumerate(runs.items()):
             late = curve["t"] > 1.0
             axes.plot(curve["t"][late], np.abs(curve["own_xy"][late]), color=style.COLOURS[place],
@@ -74,7 +64,7 @@ def co_rotated(runs: Mapping[str, Curve]) -> Figure:
 def inertia(runs: Mapping[str, Curve]) -> Figure:
     """Mean vertical stress in the frame of the box less its static value, over |sigma_v|."""
     with rc_context(style.RC):
-        figure, axes = _panel(xlabel="time [s]", ylabel="co-rotated σ$_{yy}$ / |σ$_v$| + 1", xlim=(1, 2))
+        figure, axes = style.panel(SIZE, xlabel="time [s]", ylabel="co-rotated σ$_{yy}$ / |σ$_v$| + 1", xlim=(1, 2))
         for place, (label, curve) in enumerate(runs.items()):
             late = curve["t"] > 1.0
             axes.plot(curve["t"][late], curve["own_yy"][late] + 1, color=style.COLOURS[place], label=label,
@@ -86,7 +76,7 @@ def inertia(runs: Mapping[str, Curve]) -> Figure:
 def misread(exact: Curve, controls: Mapping[str, Curve]) -> Figure:
     """Shear stress of Figure 2 by each misreading: lines for what is wrong, one set of marks for what is right here."""
     with rc_context(style.RC):
-        figure, axes = _panel(xlabel="time [s]", ylabel="σ$_{xy}$ / |σ$_v$|", xlim=(1, 2), ylim=(-0.4, 0.4))
+        figure, axes = style.panel(SIZE, xlabel="time [s]", ylabel="σ$_{xy}$ / |σ$_v$|", xlim=(1, 2), ylim=(-0.4, 0.4))
         late = exact["t"] >= 1.0
         axes.plot(exact["t"][late], exact["xy"][late], color=style.LIGHT, linewidth=7, label="exact")
         away = {name: float(np.abs(curve["xy"] - exact["xy"]).max()) for name, curve in controls.items()}
@@ -104,7 +94,9 @@ def misread(exact: Curve, controls: Mapping[str, Curve]) -> Figure:
 def orders(errors: Mapping[str, Curve], rates: Sequence[str]) -> Figure:
     """Error against the number of steps, rates in full lines and misreadings in broken ones."""
     with rc_context(style.RC):
-        figure, axes = _panel(xlabel="steps in a quarter turn", ylabel="error of the stress at the end, relative")
+        figure, axes = style.panel(
+            SIZE, xlabel="steps in a quarter turn", ylabel="error of the stress at the end, relative"
+        )
         for place, (name, curve) in enumerate(errors.items()):
             right = name in rates
             axes.plot(curve["steps"], curve["error"], color=style.COLOURS[place % len(style.COLOURS)],
@@ -123,7 +115,7 @@ def shear(exact: Curves, computed: Curves, component: str) -> Figure:
     """A stress component in simple shear over G, by each rate: the closed forms, marks for what was computed."""
     with rc_context(style.RC):
         symbol = {"s12": "σ$_{12}$", "s11": "σ$_{11}$"}[component]
-        figure, axes = _panel(xlabel="shear γ", ylabel=f"{symbol} / G", xlim=(0, 8), ylim=(-2, 8))
+        figure, axes = style.panel(SIZE, xlabel="shear γ", ylabel=f"{symbol} / G", xlim=(0, 8), ylim=(-2, 8))
         for place, (name, curve) in enumerate(exact.items()):
             axes.plot(curve["gamma"], curve[component], color=style.COLOURS[place], label=name.replace("_", " "))
             marks = computed[name]
