@@ -5,8 +5,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from solver.layout import CENTRED, Layout, Offset, annulus
-from solver.state import Floats
+from mpm_verify.solver.layout import CENTRED, Layout, Offset, annulus
+from mpm_verify.solver.state import Floats
 
 
 @dataclass(frozen=True)

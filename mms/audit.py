@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 from typing import Any
 
-from mms.manufacture import Manufactured
-from mms.measure import Law, measure
-from mms.spots import ALWAYS, RULES, Numbers, Spot
+from mpm_verify.mms.manufacture import Manufactured
+from mpm_verify.mms.measure import Law, measure
+from mpm_verify.mms.spots import ALWAYS, RULES, Numbers, Spot
 
 
 @dataclass(frozen=True)

@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from mms.edges import examine
-from mms.manufacture import manufacture
-from mms.measure import Law, Sampler, filled, largest
-from solver.state import Floats
+from mpm_verify.mms.edges import examine
+from mpm_verify.mms.manufacture import manufacture
+from mpm_verify.mms.measure import Law, Sampler, filled, largest
+from mpm_verify.solver.state import Floats
 
 PLACES, TIMES = 33, 33  # along a side and over the duration, for what has to be finite
 FINE = (49, 97, 97)  # times and places that look for the least det F

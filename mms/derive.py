@@ -13,7 +13,7 @@ from typing import Protocol
 
 import sympy as sp
 
-from mms.energy import Energy, check_energy
+from mpm_verify.mms.energy import Energy, check_energy
 
 Expressions = list[sp.Expr]
 

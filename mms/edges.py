@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from mms.manufacture import Manufactured
-from mms.measure import CELLS, TIMES, Law, Sampler, largest, least_stress
-from solver.state import Floats
+from mpm_verify.mms.manufacture import Manufactured
+from mpm_verify.mms.measure import CELLS, TIMES, Law, Sampler, largest, least_stress
+from mpm_verify.solver.state import Floats
 
 SIDES = ("left", "right", "bottom", "top")  # side // 2 is the axis of the normal, side % 2 lower or upper
 PLACES = 65  # along a side

@@ -2,7 +2,7 @@
 
 from typing import Any, Protocol
 
-from solver.plugins import MATERIALS, available, camel, load
+from mpm_verify.solver.plugins import MATERIALS, available, camel, load
 
 
 class Energy(Protocol):

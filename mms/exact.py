@@ -16,10 +16,10 @@ import numpy as np
 import sympy as sp
 from sympy.printing.pycode import PythonCodePrinter
 
-from mms.derive import Fields
-from mms.hoist import Hoist
-from solver._jit import CACHE, F1, function_type, i8, nothing
-from solver.state import Floats
+from mpm_verify.mms.derive import Fields
+from mpm_verify.mms.hoist import Hoist
+from mpm_verify.solver._jit import CACHE, F1, function_type, i8, nothing
+from mpm_verify.solver.state import Floats
 
 EXACT = nothing(F1, F1, i8, F1)  # columns[C*b + c], scalars[s], particles in the block, out[row*BLOCK + b]
 Exact = function_type(EXACT)
@@ -29,8 +29,8 @@ ROOM = 16  # rows of `out`, two of them scratch for logarithms
 
 HEADER = '''"""Generated from a manufactured solution; not for editing."""
 import math
-from solver._jit import BLOCK, kernel
-from mms.exact import EXACT
+from mpm_verify.solver._jit import BLOCK, kernel
+from mpm_verify.mms.exact import EXACT
 
 
 @kernel(EXACT)

@@ -19,9 +19,9 @@ from typing import Any
 
 import numpy as np
 
-from mms.manufacture import Manufactured
-from solver.layout import Layout, Offset, graded, per_side
-from solver.state import Floats
+from mpm_verify.mms.manufacture import Manufactured
+from mpm_verify.solver.layout import Layout, Offset, graded, per_side
+from mpm_verify.solver.state import Floats
 
 PLACES, TIMES = 96, 33  # sampled along an axis and in time
 

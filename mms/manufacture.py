@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from mms.derive import Expressions, Fields, Solution, derive
-from mms.energy import Energy
-from mms.exact import ExactKernel, compile_exact
-from solver.state import Floats
+from mpm_verify.mms.derive import Expressions, Fields, Solution, derive
+from mpm_verify.mms.energy import Energy
+from mpm_verify.mms.exact import ExactKernel, compile_exact
+from mpm_verify.solver.state import Floats
 
 Field = Callable[[Floats, float], Floats]
 

@@ -10,9 +10,9 @@ from typing import Any, Protocol
 import numpy as np
 import sympy as sp
 
-from mms.manufacture import Manufactured
-from solver.layout import Layout, shared_corners
-from solver.state import Floats
+from mpm_verify.mms.manufacture import Manufactured
+from mpm_verify.solver.layout import Layout, shared_corners
+from mpm_verify.solver.state import Floats
 
 TIMES = 33  # even steps hit the extremes of a wave whose period divides the duration
 CELLS = 16  # across the body, four places in each

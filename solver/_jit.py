@@ -19,7 +19,7 @@ os.environ.setdefault("GOMP_SPINCOUNT", "20000")
 import numba
 from numba import boolean, float64, int64, types, void
 
-from solver.sources import TOP, digest
+from mpm_verify.solver.sources import TOP, digest
 
 Function = Callable[..., Any]
 
@@ -31,7 +31,7 @@ f8, i8, flag, nothing = float64, int64, boolean, void
 
 def cache_folder() -> Path:
     """Where compiled kernels are kept: below $XDG_CACHE_HOME, or a temporary folder where that cannot be written."""
-    kernels = [*TOP.glob("solver/**/*.py"), *TOP.glob("mms/*.py"), TOP / "cases/norms.py"]
+    kernels = [*TOP.glob("solver/**/*.py"), *TOP.glob("mms/*.py"), TOP / "cases/mms/norms.py"]
     name = f"{digest(kernels)[:16]}-numba{numba.__version__}"
     home = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
     for base in (home / "mpm-verify", Path(tempfile.gettempdir()) / f"mpm-verify-{os.getuid()}"):

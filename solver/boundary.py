@@ -8,8 +8,8 @@ import numpy as np
 from numba import prange
 from numpy.typing import NDArray
 
-from solver._jit import F1, F2, f8, flag, i8, kernel, nothing
-from solver.state import Floats, Grid
+from mpm_verify.solver._jit import F1, F2, f8, flag, i8, kernel, nothing
+from mpm_verify.solver.state import Floats, Grid
 
 Kind = Literal["roller", "fixed", "free"]
 MASS_CUTOFF = 1e-12  # of a particle's mass: below it a node's velocity is 0/0

@@ -13,9 +13,9 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from solver._jit import F1, F2, f8, flag, i8, kernel
-from solver.boundary import Walls
-from solver.state import Grid
+from mpm_verify.solver._jit import F1, F2, f8, flag, i8, kernel
+from mpm_verify.solver.boundary import Walls
+from mpm_verify.solver.state import Grid
 
 Kind = Literal["local", "objective"]
 

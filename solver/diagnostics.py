@@ -20,11 +20,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solver._jit import F1, F2, f8, flag, kernel, nothing
-from solver.state import Floats, Particles
+from mpm_verify.solver._jit import F1, F2, f8, flag, kernel, nothing
+from mpm_verify.solver.state import Floats, Particles
 
 if TYPE_CHECKING:
-    from solver.model import Model
+    from mpm_verify.solver.model import Model
 
 TRANSFER, CONVECTION, WALLS, ON_GRID, GIVEN, LATE, IMPULSE, SUMS = 0, 1, 2, 3, 4, 5, 6, 8
 

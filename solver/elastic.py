@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from math import inf, sqrt
 
-from solver.state import Floats, Particles
+from mpm_verify.solver.state import Floats, Particles
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from math import isqrt, pi
 
 import numpy as np
 
-from solver.state import Floats, Ints
+from mpm_verify.solver.state import Floats, Ints
 
 Offset = tuple[float, float]
 CENTRED: Offset = (0.0, 0.0)

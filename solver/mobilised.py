@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from solver._jit import kernel
+from mpm_verify.solver._jit import kernel
 
 
 @kernel(inline=True)

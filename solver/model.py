@@ -6,19 +6,19 @@ from typing import TYPE_CHECKING, Literal, Protocol, get_args
 
 import numpy as np
 
-from solver.boundary import MASS_CUTOFF, Walls
-from solver.orders import check_stress
-from solver.slabs import Slabs
-from solver.state import Grid, Ints, Particles
-from solver.transfer import CHUNK
-from solver.transfers._base import Transfer
-from solver.transfers.flip import Flip
-from solver.weights import Basis
+from mpm_verify.solver.boundary import MASS_CUTOFF, Walls
+from mpm_verify.solver.orders import check_stress
+from mpm_verify.solver.slabs import Slabs
+from mpm_verify.solver.state import Grid, Ints, Particles
+from mpm_verify.solver.transfer import CHUNK
+from mpm_verify.solver.transfers._base import Transfer
+from mpm_verify.solver.transfers.flip import Flip
+from mpm_verify.solver.weights import Basis
 
 if TYPE_CHECKING:  # their kernels take seconds to compile, and most runs have neither
-    from solver.damping import Damping
-    from solver.diagnostics import Budget
-    from solver.smoothing._base import Smoothing
+    from mpm_verify.solver.damping import Damping
+    from mpm_verify.solver.diagnostics import Budget
+    from mpm_verify.solver.smoothing._base import Smoothing
 
 Load = Callable[[Particles, float], None]
 Deformation = Literal["linear", "exponential"]

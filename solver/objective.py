@@ -14,7 +14,7 @@ from typing import ClassVar
 import numpy as np
 from numba import prange
 
-from solver._jit import BLOCK, F1, F2, F3, Function, function_type, kernel, nothing
+from mpm_verify.solver._jit import BLOCK, F1, F2, F3, Function, function_type, kernel, nothing
 
 UNROTATE, ROTATE, RESPOND = nothing(F1, F1, F1, F1), nothing(F1, F1, F1), nothing(F1, F1, F1, F1)
 SIGNATURE = nothing(function_type(UNROTATE), function_type(ROTATE), function_type(RESPOND), F1, F2, F3, F3, F2, F2, F2)

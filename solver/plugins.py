@@ -12,13 +12,18 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from solver.sources import TOP
+from mpm_verify.solver.sources import TOP
 
-METHODS, MATERIALS, SOLUTIONS, CASES = "solver.basis", "solver.material", "mms.solutions", "cases.library"
-LAYOUTS = "mms.layouts"
-TRANSFERS = "solver.transfers"
-RATES, MISREADINGS = "solver.rates", "solver.misreadings"
-SMOOTHINGS = "solver.smoothing"
+METHODS, MATERIALS, SOLUTIONS, CASES = (
+    "mpm_verify.solver.basis",
+    "mpm_verify.solver.material",
+    "mpm_verify.mms.solutions",
+    "mpm_verify.cases",
+)
+LAYOUTS = "mpm_verify.mms.layouts"
+TRANSFERS = "mpm_verify.solver.transfers"
+RATES, MISREADINGS = "mpm_verify.solver.rates", "mpm_verify.solver.misreadings"
+SMOOTHINGS = "mpm_verify.solver.smoothing"
 KINDS = {
     METHODS: "method",
     MATERIALS: "material",
@@ -34,12 +39,19 @@ KINDS = {
 
 def available(package: str) -> list[str]:
     """Names of the plug-ins in a package such as `solver.basis`, found without importing anything."""
-    return sorted(file.stem for file in folder(package).glob("*.py") if not file.stem.startswith("_"))
+    files = (file.stem for file in folder(package).glob("*.py") if not file.stem.startswith("_"))
+    return sorted([*files, *(file.parent.name for file in folder(package).glob("*/case.py"))])
 
 
 def folder(package: str) -> Path:
     """Where the files of a package are."""
-    return TOP.joinpath(*package.split("."))
+    return TOP.joinpath(*package.split(".")[1:])
+
+
+def path(package: str, name: str) -> Path:
+    """File of a plug-in; of a case the `case.py` of its folder."""
+    file = folder(package) / f"{name}.py"
+    return file if file.exists() else folder(package) / name / "case.py"
 
 
 def load(package: str, name: str) -> Any:

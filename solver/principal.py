@@ -6,7 +6,7 @@ one. Tension positive. Squares are taken as they are: stresses below 1e-150 or a
 
 import numpy as np
 
-from solver._jit import kernel
+from mpm_verify.solver._jit import kernel
 
 
 @kernel(inline=True)

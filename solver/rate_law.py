@@ -6,10 +6,10 @@ from typing import ClassVar, cast
 
 import numpy as np
 
-from solver._jit import Function
-from solver.objective import Rate, integrate
-from solver.plugins import MISREADINGS, RATES, available, load
-from solver.state import Floats, Particles
+from mpm_verify.solver._jit import Function
+from mpm_verify.solver.objective import Rate, integrate
+from mpm_verify.solver.plugins import MISREADINGS, RATES, available, load
+from mpm_verify.solver.state import Floats, Particles
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from solver.state import Grid, Ints, Particles
+from mpm_verify.solver.state import Grid, Ints, Particles
 
 WIDTH = 8  # columns; leaves a particle with a reach of one column two columns to wander before the next sort
 

@@ -4,7 +4,7 @@ import hashlib
 from collections.abc import Iterable
 from pathlib import Path
 
-TOP = Path(__file__).resolve().parent.parent
+TOP = Path(__file__).absolute().parent.parent  # the folder of the installed package; links stay as they are
 
 
 def digest(files: Iterable[Path]) -> str:

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from solver._jit import BLOCK
-from solver.boundary import solve
-from solver.model import Load, Material, Model, RunFailed, Scheme, check_time_step, fail
-from solver.state import Floats, Ints
-from solver.transfer import g2p, p2g
+from mpm_verify.solver._jit import BLOCK
+from mpm_verify.solver.boundary import solve
+from mpm_verify.solver.model import Load, Material, Model, RunFailed, Scheme, check_time_step, fail
+from mpm_verify.solver.state import Floats, Ints
+from mpm_verify.solver.transfer import g2p, p2g
 
 if TYPE_CHECKING:
-    from solver.rate_law import RateLaw
+    from mpm_verify.solver.rate_law import RateLaw
 
 __all__ = ["Load", "Material", "Model", "RunFailed", "Scheme", "advance", "check_time_step"]
 
@@ -38,7 +38,7 @@ def stress_last(model: Model) -> None:
 
 def stress_modified_last(model: Model) -> None:
     """v, then F from the velocities that it gives at the nodes, with the weights of the step's start."""
-    from solver.transfers._passes import advect, spread, walled
+    from mpm_verify.solver.transfers._passes import advect, spread, walled
 
     particles_to_grid(model)
     equation_of_motion(model)
@@ -55,7 +55,7 @@ def stress_modified_last(model: Model) -> None:
 
 def stress_first(model: Model) -> None:
     """F and sigma; then all of them to the grid, v and x. Weights follow F, so those of the forces know it."""
-    from solver.transfers._passes import advect, walled
+    from mpm_verify.solver.transfers._passes import advect, walled
 
     rest = np.zeros_like(model.grid.motion)
     particles_to_grid(model)
@@ -137,7 +137,7 @@ def grid_to_particles(model: Model) -> None:
 
 def new_velocities(model: Model) -> None:
     """v alone at the end of the step."""
-    from solver.transfers._passes import collect
+    from mpm_verify.solver.transfers._passes import collect
 
     p, share, taken = model.particles, model.scheme.transfer.share, collect(model, model.grid.motion)
     p.v[:] = share * (p.v + model.dt * taken[:, 2:]) + (1.0 - share) * taken[:, :2]

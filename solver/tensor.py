@@ -1,6 +1,6 @@
 """Tables of bases that are products of weights along x and along y: three by three or four by four neighbours."""
 
-from solver._jit import BLOCK, kernel
+from mpm_verify.solver._jit import BLOCK, kernel
 
 
 @kernel(inline=True)

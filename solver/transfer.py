@@ -10,8 +10,8 @@ The parallel kernels are thin, and call one that is compiled apart: what stands 
 import numpy as np
 from numba import prange
 
-from solver._jit import BLOCK, F1, F2, F3, I1, f8, flag, i8, kernel, nothing
-from solver.weights import Fill
+from mpm_verify.solver._jit import BLOCK, F1, F2, F3, I1, f8, flag, i8, kernel, nothing
+from mpm_verify.solver.weights import Fill
 
 B = np.uint64(BLOCK)  # unsigned indices: a signed one costs a comparison and a selection, for Python's x[-1]
 CHUNK = 128 * BLOCK  # particles a thread takes at a time on the way back

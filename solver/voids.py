@@ -7,7 +7,7 @@ and a particle that came back from a thousandfold volume would do so with V = J 
 Tampubolon et al., ACM Trans. Graph. 36 (2017) 105, for laws of F.
 """
 
-from solver._jit import kernel
+from mpm_verify.solver._jit import kernel
 
 
 @kernel(inline=True)

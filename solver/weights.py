@@ -23,9 +23,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from solver._jit import BLOCK, F1, I1, f8, flag, function_type, i8, kernel
-from solver.layout import Layout
-from solver.state import Floats, Grid, Particles
+from mpm_verify.solver._jit import BLOCK, F1, I1, f8, flag, function_type, i8, kernel
+from mpm_verify.solver.layout import Layout
+from mpm_verify.solver.state import Floats, Grid, Particles
 
 #         x   F  domain ox  oy 1/dx nx  ny  x0  x1  y0  y1 table node
 FILL = flag(F1, F1, F1, f8, f8, f8, i8, i8, f8, f8, f8, f8, F1, I1)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.state import Floats
+from mpm_verify.solver.state import Floats
 
 AXES = list(permutations(range(3), 2))
 

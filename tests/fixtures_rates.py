@@ -4,11 +4,11 @@ from typing import Any
 
 import numpy as np
 
-from cases.kinematic import Path
-from cases.turning_block import turn
-from solver.plugins import MATERIALS, MISREADINGS, RATES, available, create, load
-from solver.rate_law import RateLaw
-from solver.state import Floats, Particles
+from mpm_verify.cases.objectivity.kinematic import Path
+from mpm_verify.cases.objectivity.turning_block import turn
+from mpm_verify.solver.plugins import MATERIALS, MISREADINGS, RATES, available, create, load
+from mpm_verify.solver.rate_law import RateLaw
+from mpm_verify.solver.state import Floats, Particles
 
 RIGHT, WRONG = available(RATES), available(MISREADINGS)
 LAWS = [name for name in available(MATERIALS) if issubclass(load(MATERIALS, name), RateLaw)]

@@ -6,11 +6,11 @@ from unittest.mock import patch
 
 import numpy as np
 
-from cases import study as contract
-from cases.order import Expectation
-from cases.store import Arrays, Store
-from cases.study import NORMS, QUANTITIES, Declared, Failure, Result, Run, Study
-from mms.spots import ALWAYS, Spot
+from mpm_verify.cases.harness import study as contract
+from mpm_verify.cases.harness.store import Arrays, Store
+from mpm_verify.cases.harness.study import NORMS, QUANTITIES, Declared, Failure, Result, Run, Study
+from mpm_verify.cases.judging.order import Expectation
+from mpm_verify.mms.spots import ALWAYS, Spot
 
 CELLS = (8, 16, 32, 64, 128)
 U_RMS: dict[tuple[str, int], tuple[float, ...]] = {  # the runs behind the last number failed

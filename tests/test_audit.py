@@ -11,14 +11,14 @@ import pytest
 import test_defects as defects
 from pydantic import TypeAdapter
 
-from mms.audit import ALWAYS, Audit, audit
-from mms.manufacture import Manufactured, manufacture
-from mms.measure import boundary
-from mms.spots import RULES, SEEN_BY
-from solver.layout import annulus, rectangle
-from solver.plugins import MATERIALS, SOLUTIONS, available, create
-from solver.state import Floats
-from verify.main import main
+from mpm_verify.mms.audit import ALWAYS, Audit, audit
+from mpm_verify.mms.manufacture import Manufactured, manufacture
+from mpm_verify.mms.measure import boundary
+from mpm_verify.mms.spots import RULES, SEEN_BY
+from mpm_verify.solver.layout import annulus, rectangle
+from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS, available, create
+from mpm_verify.solver.state import Floats
+from mpm_verify.verify.main import main
 
 DIAGONAL = {"shear", "rotation", "order", "spin"}
 BLIND = {
@@ -44,8 +44,8 @@ class Case:
     """A solution, its exact fields, its audit."""
 
     def __init__(self, text: str) -> None:
-        self.solution: Any = create("mms.solutions", text)
-        self.law: Any = create("solver.material", self.solution.material)
+        self.solution: Any = create("mpm_verify.mms.solutions", text)
+        self.law: Any = create("mpm_verify.solver.material", self.solution.material)
         self.exact: Manufactured = manufacture(self.solution, self.law, self.law.rho0)
         self.audit: Audit = audit(self.exact, self.solution, self.law)
         self.blind = {spot.key for spot in self.audit.blind if spot not in ALWAYS}
@@ -61,7 +61,7 @@ def test_what_is_found(text: str) -> None:
 
 
 def test_every_solution_is_here() -> None:
-    assert set(available("mms.solutions")) <= set(BLIND)
+    assert set(available("mpm_verify.mms.solutions")) <= set(BLIND)
 
 
 def turn(w_t: float) -> float:

@@ -13,20 +13,20 @@ import pandas as pd
 import pytest
 from jsonschema import Draft202012Validator
 
-from cases.axes import crossed, level, middle, particle_axes, position_axes, time_axes
-from cases.mms_study import MOST, Sweep, build, offsets
-from cases.order import Expectation, Outcome
-from cases.runner import InProcess, pending, run_study
-from cases.series import collect
-from cases.store import Store
-from cases.study import NORMS, QUANTITIES, Declared, Failure, Result, Run, Study
-from cases.verdicts import findings, refinement
-from reports import words
-from reports.render import render
-from reports.stored import Record
-from reports.style import look
-from verify.document import SCHEMA
-from verify.main import main
+from mpm_verify.cases.harness.axes import crossed, level, middle, particle_axes, position_axes, time_axes
+from mpm_verify.cases.harness.runner import InProcess, pending, run_study
+from mpm_verify.cases.harness.series import collect
+from mpm_verify.cases.harness.store import Store
+from mpm_verify.cases.harness.study import NORMS, QUANTITIES, Declared, Failure, Result, Run, Study
+from mpm_verify.cases.harness.verdicts import findings, refinement
+from mpm_verify.cases.judging.order import Expectation, Outcome
+from mpm_verify.cases.mms.sweep import MOST, Sweep, build, offsets
+from mpm_verify.reports.components import words
+from mpm_verify.reports.export.document import SCHEMA
+from mpm_verify.reports.figures.style import look
+from mpm_verify.reports.frames import Record
+from mpm_verify.reports.pages.mms import render
+from mpm_verify.verify.main import main
 
 BASE = Run("cpdi", "axis_aligned", "neo_hookean", 8, 4, 0.4)
 Errors = Callable[[Run], float]

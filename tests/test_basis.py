@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from scipy.interpolate import BSpline
 
-from solver._jit import BLOCK
-from solver.layout import SIDES, Layout, rectangle
-from solver.plugins import available, create
-from solver.state import PAD, Floats, Grid
+from mpm_verify.solver._jit import BLOCK
+from mpm_verify.solver.layout import SIDES, Layout, rectangle
+from mpm_verify.solver.plugins import available, create
+from mpm_verify.solver.state import PAD, Floats, Grid
 
 LIMITED = "cpdi:limit=0.45"  # half diagonals are 0.35 cells before they deform
-BASES = [*available("solver.basis"), LIMITED]
+BASES = [*available("mpm_verify.solver.basis"), LIMITED]
 DX, NX, NY, ORIGIN = 0.13, 23, 19, np.array([-0.7, 0.4])  # nothing square, nothing at zero
 EXACT = 1e-13
 KINDS = {name: ["near I", "far from I"] for name in BASES}
@@ -33,7 +33,7 @@ class Table:
 
 def fill(name: str, x: Floats, F: Floats, r0: Floats, box: Any = (0.0, NX - 1.0, 0.0, NY - 1.0)) -> Table:
     """Call the kernel of basis `name` on up to BLOCK particles, and unpack the layout of solver/weights.py."""
-    basis, n = create("solver.basis", name), len(x)
+    basis, n = create("mpm_verify.solver.basis", name), len(x)
     K, domain = basis.support, basis.domain(*bodies(x, F, r0))
     table, node = np.full(3 * K * BLOCK, -7.0), np.full(K * BLOCK, -7, np.int64)
     ok = basis.fill(x.ravel(), F.ravel(), domain.ravel(), *ORIGIN, 1 / DX, NX, NY, *map(float, box), table, node)
@@ -241,7 +241,7 @@ def test_gimp_refuses_domains_wider_than_a_cell() -> None:
 
 def test_quadrilaterals() -> None:
     """CPDI2 on crooked domains: partition of unity, the centroid, Gauss points in the bilinear map, inside out."""
-    rng, basis = np.random.default_rng(8), create("solver.basis", "cpdi2")
+    rng, basis = np.random.default_rng(8), create("mpm_verify.solver.basis", "cpdi2")
     for _ in range(50):
         x, F, r0 = particles(rng, "far from I", 1)
         corner = bodies(x, F, r0)[1](bodies(x, F, r0)[0].corners.reshape(-1, 2)) + 0.05 * DX * rng.random((4, 2))
@@ -313,7 +313,7 @@ def test_short_blocks(name: str, count: int) -> None:
     whole, part = fill(name, x, F, r0), fill(name, x[:count], F[:count], r0[:count])
     for array in ("node", "N", "dN"):
         np.testing.assert_array_equal(getattr(part, array), getattr(whole, array)[:count])
-    basis = create("solver.basis", name)
+    basis = create("mpm_verify.solver.basis", name)
     K = basis.support
     table, node = np.full(3 * K * BLOCK, -7.0), np.full(K * BLOCK, -7, np.int64)
     domain = basis.domain(*bodies(x[:count], F[:count], r0[:count]))
@@ -336,8 +336,8 @@ def test_on_a_node(name: str) -> None:
 def test_a_limit_cuts_long_domains_alone() -> None:
     """What is shorter has the bits of CPDI without one; `cut` says which, `corners` gives what the fill takes."""
     x, F, r0 = particles(np.random.default_rng(10), "far from I")
-    basis = create("solver.basis", LIMITED)
-    domain, whole = basis.domain(*bodies(x, F, r0)), create("solver.basis", "cpdi")
+    basis = create("mpm_verify.solver.basis", LIMITED)
+    domain, whole = basis.domain(*bodies(x, F, r0)), create("mpm_verify.solver.basis", "cpdi")
     cut = basis.cut(F, domain, DX)
     assert 3 < cut.sum() < len(x) - 3
     free, limited = fill("cpdi", x, F, r0), fill(LIMITED, x, F, r0)
@@ -353,7 +353,7 @@ def test_a_limit_cuts_long_domains_alone() -> None:
 @pytest.mark.parametrize("limit", ["0", "-1"])
 def test_a_limit_above_zero(limit: str) -> None:
     with pytest.raises(ValueError, match="must be above zero"):
-        create("solver.basis", f"cpdi:limit={limit}")
+        create("mpm_verify.solver.basis", f"cpdi:limit={limit}")
 
 
 @pytest.mark.parametrize("ppc", [1, 4, 9, 16])

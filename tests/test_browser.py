@@ -13,17 +13,22 @@ import pytest
 from selenium import webdriver
 from selenium.webdriver.chrome.service import Service
 
-from cases import column_sweep, material_exam, objectivity_block, objectivity_kinematic
-from cases.element_paths import TESTS
-from cases.objectivity import examine
-from cases.objectivity_exact import rotated
-from cases.objectivity_kinematic import STEPS
-from cases.runner import InProcess, run_study
-from cases.store import Store
-from cases.turning_block import Block
-from reports import column_page, material_page, objectivity_page
-from reports.render import render
-from solver.plugins import create
+from mpm_verify.cases.column import sweep as column_sweep
+from mpm_verify.cases.element import exam as material_exam
+from mpm_verify.cases.element.paths import TESTS
+from mpm_verify.cases.harness.runner import InProcess, run_study
+from mpm_verify.cases.harness.store import Store
+from mpm_verify.cases.objectivity import block as objectivity_block
+from mpm_verify.cases.objectivity import rates as objectivity_kinematic
+from mpm_verify.cases.objectivity.exact import rotated
+from mpm_verify.cases.objectivity.exam import examine
+from mpm_verify.cases.objectivity.rates import STEPS
+from mpm_verify.cases.objectivity.turning_block import Block
+from mpm_verify.reports.pages import column as column_page
+from mpm_verify.reports.pages import element as material_page
+from mpm_verify.reports.pages import objectivity as objectivity_page
+from mpm_verify.reports.pages.mms import render
+from mpm_verify.solver.plugins import create
 
 CHROMIUM, DRIVER = Path("/usr/bin/chromium"), Path("/usr/bin/chromedriver")
 WIDTHS = (1280, 360)
@@ -140,7 +145,7 @@ def objectivity(folder: Path) -> Path:
 
 def material(folder: Path) -> Path:
     """Three element tests of UBCSAND in few steps, with a check that misses."""
-    law = create("solver.material", "ubcsand")
+    law = create("mpm_verify.solver.material", "ubcsand")
     tests = [TESTS[name] for name in ("biaxial", "shear_volume", "cyclic_shear")]
     found = material_exam.examine("ubcsand", law, tests, 5e3, 12, "verify material ubcsand")
     missed = replace(found.checks[0], found=9.0, way="at most")

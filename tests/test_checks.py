@@ -10,13 +10,13 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from cases.checks import Check, Examination, load, save
-from cases.records import Outcome
-from cases.store import StoreError
-from reports.examined import Section, checks_table, digits, render
-from reports.page import Add
-from verify.examine import closest, conduct, document, sentence
-from verify.main import main
+from mpm_verify.cases.harness.checks import Check, Examination, load, save
+from mpm_verify.cases.harness.store import StoreError
+from mpm_verify.cases.judging.records import Outcome
+from mpm_verify.reports.components.examined import Section, checks_table, digits, render
+from mpm_verify.reports.components.page import Add
+from mpm_verify.verify.examine import closest, conduct, document, sentence
+from mpm_verify.verify.main import main
 
 CURVES = {"run/block of 1 m": {"t": np.linspace(0, 1, 5), "xx": np.arange(5.0)}, "exact": {"t": np.zeros(0)}}
 GOOD = Check("turn", "stress", 1.001, 1.0, "relative", "closed form", 0.01)

@@ -15,15 +15,17 @@ from typing import Any
 import fixtures_study as fixtures
 import pytest
 
-from cases.library import mms
-from cases.shipped import shipped
-from cases.store import Store
-from cases.study import NORMS, QUANTITIES, Result
-from solver.plugins import available
-from verify.main import app, main
+from mpm_verify.cases import mms
+from mpm_verify.cases.harness.shipped import shipped
+from mpm_verify.cases.harness.store import Store
+from mpm_verify.cases.harness.study import NORMS, QUANTITIES, Result
+from mpm_verify.solver.plugins import available
+from mpm_verify.verify.main import app, main
 
-METHODS, SOLUTIONS, MATERIALS = (available(p) for p in ("solver.basis", "mms.solutions", "solver.material"))
-VERIFY = [sys.executable, "-m", "verify.main"]
+METHODS, SOLUTIONS, MATERIALS = (
+    available(p) for p in ("mpm_verify.solver.basis", "mpm_verify.mms.solutions", "mpm_verify.solver.material")
+)
+VERIFY = [sys.executable, "-m", "mpm_verify.verify.main"]
 BELOW_A_FILE = "file/below"  # cannot be made even by root, whom no permission stops
 
 
@@ -66,8 +68,8 @@ def verify(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], 
 def quickly(monkeypatch: pytest.MonkeyPatch) -> None:
     """Known results in place of the solver, and no page."""
     monkeypatch.setattr(mms, "execute", lambda run, tick: (fixtures._result(run), {}))
-    monkeypatch.setattr("reports.render.render", lambda folder, record=None: folder / "report.html")
-    monkeypatch.setattr("verify.conduct.SMALL", float("inf"))  # worker processes would run the solver
+    monkeypatch.setattr("mpm_verify.reports.pages.mms.render", lambda folder, record=None: folder / "report.html")
+    monkeypatch.setattr("mpm_verify.verify.conduct.SMALL", float("inf"))  # worker processes would run the solver
 
 
 def content(folder: Path) -> dict[str, bytes]:
@@ -269,12 +271,12 @@ def test_list_names_every_plugin(verify: Verify) -> None:
     assert (said.code, said.err) == (0, "")
     listed = {line.split()[0] for line in said.out.splitlines() if line.startswith("  ")}
     others = (
-        "cases.library",
-        "solver.transfers",
-        "solver.smoothing",
-        "mms.layouts",
-        "solver.rates",
-        "solver.misreadings",
+        "mpm_verify.cases",
+        "mpm_verify.solver.transfers",
+        "mpm_verify.solver.smoothing",
+        "mpm_verify.mms.layouts",
+        "mpm_verify.solver.rates",
+        "mpm_verify.solver.misreadings",
     )
     plugins = {name for package in others for name in available(package)}
     assert listed == {*METHODS, *SOLUTIONS, *MATERIALS, *plugins, *shipped()}
@@ -346,7 +348,7 @@ def test_default_folder_is_named_after_what_is_swept(verify: Verify, quickly: No
 
 
 def test_command_in_the_study_repeats_it(verify: Verify, quickly: None, tmp_path: Path) -> None:
-    from cases.store import Store
+    from mpm_verify.cases.harness.store import Store
 
     where = ["--out", "study", "--jobs", "1", "--threads=1", "--junit=out.xml", "--json"]
     verify("mms", "--cells", "8,16", *where, "--solution", "axis_aligned:A=0.01")
@@ -359,7 +361,7 @@ def test_command_in_the_study_repeats_it(verify: Verify, quickly: None, tmp_path
 HEAVY = ("numba", "sympy", "scipy", "matplotlib", "pandas", "numpy")
 LOOK = f"""
 import sys
-from verify.main import main
+from mpm_verify.verify.main import main
 sys.argv[0] = "verify"
 try:
     main()

@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from cases.column_measure import Measure, connected, final, quantile, surface
-from cases.column_run import ColumnRun
-from cases.column_start import oedometric
-from cases.library.column import Gate, execute, gravity, setup
-from solver.material.mohr_coulomb import MohrCoulomb
-from solver.material.ubcsand import Ubcsand
-from solver.step import RunFailed, advance
+from mpm_verify.cases.column.case import Gate, execute, gravity, setup
+from mpm_verify.cases.column.measure import Measure, connected, final, quantile, surface
+from mpm_verify.cases.column.run import ColumnRun
+from mpm_verify.cases.column.start import oedometric
+from mpm_verify.solver.material.mohr_coulomb import MohrCoulomb
+from mpm_verify.solver.material.ubcsand import Ubcsand
+from mpm_verify.solver.step import RunFailed, advance
 
 SMALL = ColumnRun(cells=4, ppc=4, duration=0.3)
 

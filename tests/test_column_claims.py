@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from cases.column_claims import Claim, Ran, beyond, claims, families, told
-from cases.column_experiment import experiment
-from cases.column_run import ColumnRun
+from mpm_verify.cases.column.claims import Claim, Ran, beyond, claims, families, told
+from mpm_verify.cases.column.experiment import experiment
+from mpm_verify.cases.column.run import ColumnRun
 
 T = np.linspace(0, 1.4, 141)
 USUAL = ColumnRun()

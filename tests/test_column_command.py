@@ -8,11 +8,11 @@ from xml.etree import ElementTree
 
 import pytest
 
-from cases.column_exam import look
-from cases.column_run import ColumnRun
-from cases.store import Store
-from reports.column_page import read
-from verify.main import main
+from mpm_verify.cases.column.exam import look
+from mpm_verify.cases.column.run import ColumnRun
+from mpm_verify.cases.harness.store import Store
+from mpm_verify.reports.pages.column import read
+from mpm_verify.verify.main import main
 
 SMALL = ("--cells", "2", "--ppc", "4")
 STUDY = """

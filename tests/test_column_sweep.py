@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from cases.column_run import ColumnRun
-from cases.column_sweep import read
-from cases.shipped import shipped
-from solver.sources import TOP
+from mpm_verify.cases.column.run import ColumnRun
+from mpm_verify.cases.column.sweep import read
+from mpm_verify.cases.harness.shipped import shipped
+from mpm_verify.solver.sources import TOP
 
 FIGURES = {f"figure{number}" for number in range(3, 9)}
 

@@ -5,13 +5,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from solver.basis.mpm import Mpm
-from solver.boundary import box
-from solver.damping import Damping
-from solver.layout import rectangle
-from solver.material.hypoelastic import Hypoelastic
-from solver.state import Grid, Particles
-from solver.step import Model, advance
+from mpm_verify.solver.basis.mpm import Mpm
+from mpm_verify.solver.boundary import box
+from mpm_verify.solver.damping import Damping
+from mpm_verify.solver.layout import rectangle
+from mpm_verify.solver.material.hypoelastic import Hypoelastic
+from mpm_verify.solver.state import Grid, Particles
+from mpm_verify.solver.step import Model, advance
 
 SOFT = Hypoelastic(E=1e-6, rho0=1.0)
 G = 10.0

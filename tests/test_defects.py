@@ -12,16 +12,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from cases.expectations import expected
-from cases.library import mms
-from cases.library.mms import Comparison
-from cases.norms import compare, new_shares
-from cases.order import Expectation, Level, Outcome, Verdict, judge
-from cases.study import Result, Run
-from solver._jit import use_threads
-from solver.boundary import Walls
-from solver.state import Floats, Particles
-from solver.step import Model
+from mpm_verify.cases import mms
+from mpm_verify.cases.harness.study import Result, Run
+from mpm_verify.cases.judging.order import Expectation, Level, Outcome, Verdict, judge
+from mpm_verify.cases.mms.case import Comparison
+from mpm_verify.cases.mms.expectations import expected
+from mpm_verify.cases.mms.norms import compare, new_shares
+from mpm_verify.solver._jit import use_threads
+from mpm_verify.solver.boundary import Walls
+from mpm_verify.solver.state import Floats, Particles
+from mpm_verify.solver.step import Model
 
 CELLS = (8, 16, 32, 64)
 PASS = Outcome.PASS

@@ -9,10 +9,10 @@ from fixtures_plastic import biaxial, eigenvalues, respond, simple_shear, stiffn
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from solver.material.drucker_prager import CONES, DruckerPrager
-from solver.material.mohr_coulomb import MohrCoulomb
-from solver.plugins import create
-from solver.state import Floats
+from mpm_verify.solver.material.drucker_prager import CONES, DruckerPrager
+from mpm_verify.solver.material.mohr_coulomb import MohrCoulomb
+from mpm_verify.solver.plugins import create
+from mpm_verify.solver.state import Floats
 
 COUNT = 10_000
 LAWS: dict[str, dict[str, Any]] = {
@@ -200,4 +200,4 @@ def test_whatever_comes(values: dict[str, Any], state: tuple[float, ...]) -> Non
 )
 def test_bad_parameters(text: str, message: str) -> None:
     with pytest.raises(ValueError, match=message):
-        create("solver.material", f"drucker_prager:{text}")
+        create("mpm_verify.solver.material", f"drucker_prager:{text}")

@@ -10,10 +10,10 @@ from fixtures_rates import RIGHT, started, step_to
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from cases.turning_block import turn
-from solver.material.hypoelastic import Hypoelastic
-from solver.material.neo_hookean import NeoHookean
-from solver.state import Floats, Particles
+from mpm_verify.cases.objectivity.turning_block import turn
+from mpm_verify.solver.material.hypoelastic import Hypoelastic
+from mpm_verify.solver.material.neo_hookean import NeoHookean
+from mpm_verify.solver.state import Floats, Particles
 
 HUGE = [0.0, -0.0, 1.0, -1.0, 1e-150, -1e-150, 1e150, -1e150, 1e-300, 1e300]
 LOST = st.sampled_from([nan, inf, -inf])

@@ -6,16 +6,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cases.element import Element, ElementFailed, State, stretch
-from cases.element_csv import from_file
-from cases.element_paths import TESTS, follow, given, held, moves
-from cases.material_curves import EnergyElement, columns, energy_stress, start
-from cases.material_exact import exact
-from cases.material_exam import study
-from solver.material.hypoelastic import Hypoelastic
-from solver.material.mohr_coulomb import MohrCoulomb
-from solver.material.ubcsand import Ubcsand
-from solver.plugins import create
+from mpm_verify.cases.element.curves import EnergyElement, columns, energy_stress, start
+from mpm_verify.cases.element.element import Element, ElementFailed, State, stretch
+from mpm_verify.cases.element.exact import exact
+from mpm_verify.cases.element.exam import study
+from mpm_verify.cases.element.path_file import from_file
+from mpm_verify.cases.element.paths import TESTS, follow, given, held, moves
+from mpm_verify.solver.material.hypoelastic import Hypoelastic
+from mpm_verify.solver.material.mohr_coulomb import MohrCoulomb
+from mpm_verify.solver.material.ubcsand import Ubcsand
+from mpm_verify.solver.plugins import create
 
 ELASTIC = Hypoelastic(E=840e3)
 every_test = pytest.mark.parametrize("name", TESTS)
@@ -59,11 +59,11 @@ def test_oedometric_stress_is_that_of_the_logarithmic_strain() -> None:
 
 @pytest.mark.parametrize("name", ["neo_hookean", "linear_elastic"])
 def test_laws_of_f_meet_the_derivative_of_their_energy(name: str) -> None:
-    law = create("solver.material", f"{name}:E=840e3")
+    law = create("mpm_verify.solver.material", f"{name}:E=840e3")
     test = TESTS["biaxial"]
     ends = [follow(kind(law), test, 6, np.zeros(4)) for kind in (Element, EnergyElement)]
     np.testing.assert_allclose(ends[0].sigma, ends[1].sigma, atol=1e-8 * np.abs(ends[1].sigma).max())
-    wrong = create("solver.material", f"{name}:E=840e3,nu=0.31")
+    wrong = create("mpm_verify.solver.material", f"{name}:E=840e3,nu=0.31")
     other = follow(EnergyElement(wrong), test, 6, np.zeros(4))
     assert np.abs(ends[0].sigma - other.sigma).max() > 1e-3 * np.abs(other.sigma).max()  # and another law is seen
     assert energy_stress(law, np.zeros(3)) == pytest.approx(np.zeros(4), abs=1e-9)

@@ -5,12 +5,20 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from cases.expectations import JUDGED_PPC, REGISTERED, STALL, expected, later_with_9, registered, registry
-from cases.methods_study import LEVELS, QUICK, Comparison, build_methods, everything
-from cases.mms_study import Sweep, build, canonical
-from cases.study import QUANTITIES
-from solver.plugins import MATERIALS, METHODS, SOLUTIONS, available, create
-from verify.main import app
+from mpm_verify.cases.harness.study import QUANTITIES
+from mpm_verify.cases.mms.expectations import (
+    JUDGED_PPC,
+    REGISTERED,
+    STALL,
+    expected,
+    later_with_9,
+    registered,
+    registry,
+)
+from mpm_verify.cases.mms.methods import LEVELS, QUICK, Comparison, build_methods, everything
+from mpm_verify.cases.mms.sweep import Sweep, build, canonical
+from mpm_verify.solver.plugins import MATERIALS, METHODS, SOLUTIONS, available, create
+from mpm_verify.verify.main import app
 
 OWN = str(Path(__file__).with_name("own_solution.py"))
 LAW = "neo_hookean"
@@ -32,7 +40,7 @@ def test_everything_shipped_is_registered_with_its_source(method: str, solution:
             if ppc == 9 and later_with_9(method, solution, registered(solution, method, quantity)):
                 assert found is None
                 continue
-            assert found is not None, f"register what {method} does on {solution}: cases/expectations.py"
+            assert found is not None, f"register what {method} does on {solution}: cases/mms/expectations.py"
             assert found.source
 
 

@@ -7,16 +7,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from cases.graded_study import Bounded, Plan, build_graded, cost_of, factor, kind, savings
-from cases.library import mms as case
-from cases.mms_study import Sweep, build
-from cases.packing import counts, full_cells, outline
-from cases.study import NORMS, QUANTITIES, Failure, Result, Run
-from mms.grading import Grading, equidistributed, expected_strain
-from mms.manufacture import Manufactured
-from solver.layout import CENTRED, Layout, annulus, graded, rectangle
-from solver.plugins import LAYOUTS, SOLUTIONS, available, create
-from solver.state import Floats, Grid
+from mpm_verify.cases import mms as case
+from mpm_verify.cases.harness.study import NORMS, QUANTITIES, Failure, Result, Run
+from mpm_verify.cases.mms.graded import Bounded, Plan, build_graded, cost_of, factor, kind, savings
+from mpm_verify.cases.mms.packing import counts, full_cells, outline
+from mpm_verify.cases.mms.sweep import Sweep, build
+from mpm_verify.mms.grading import Grading, equidistributed, expected_strain
+from mpm_verify.mms.manufacture import Manufactured
+from mpm_verify.solver.layout import CENTRED, Layout, annulus, graded, rectangle
+from mpm_verify.solver.plugins import LAYOUTS, SOLUTIONS, available, create
+from mpm_verify.solver.state import Floats, Grid
 
 CENTRE, CORNER = (15, 15), (0, 0)
 

@@ -12,9 +12,9 @@ from typing import Any
 
 import pytest
 
-from solver import _jit, sources
-from solver.plugins import available
-from solver.sources import TOP
+from mpm_verify.solver import _jit, sources
+from mpm_verify.solver.plugins import available
+from mpm_verify.solver.sources import TOP
 
 FLOORS = ("solver", "mms", "cases", "reports", "verify")
 FILES = sorted(file for floor in FLOORS for file in (TOP / floor).rglob("*.py"))
@@ -63,7 +63,7 @@ def dispatchers() -> Iterator[tuple[str, Any]]:
     from numba.core.dispatcher import Dispatcher
 
     for file in KERNELS:
-        import_module(".".join(file.relative_to(TOP).with_suffix("").parts))
+        import_module(".".join(("mpm_verify", *file.relative_to(TOP).with_suffix("").parts)))
     for name, module in list(sys.modules.items()):
         if name.partition(".")[0] in ("solver", "cases", "mms") or name.startswith("exact_"):
             for key, value in vars(module).items():
@@ -77,12 +77,18 @@ def inlined(dispatcher: Any) -> bool:
 
 
 def test_options_of_every_kernel() -> None:
-    from mms.manufacture import manufacture
-    from solver.plugins import create
+    from mpm_verify.mms.manufacture import manufacture
+    from mpm_verify.solver.plugins import create
 
-    assert manufacture(create("mms.solutions", "axis_aligned"), create("solver.material", "neo_hookean"), 1.0).kernel
+    assert manufacture(
+        create("mpm_verify.mms.solutions", "axis_aligned"), create("mpm_verify.solver.material", "neo_hookean"), 1.0
+    ).kernel
     seen = dict(dispatchers())
-    assert {"solver.transfer.p2g", "solver.basis.cpdi.fill", "cases.norms.compare"} <= set(seen)
+    assert {
+        "mpm_verify.solver.transfer.p2g",
+        "mpm_verify.solver.basis.cpdi.fill",
+        "mpm_verify.cases.mms.norms.compare",
+    } <= set(seen)
     assert any(name.startswith("exact_") for name in seen)
     for name, dispatcher in seen.items():
         options = dispatcher.targetoptions
@@ -146,11 +152,11 @@ print(json.dumps(count()))
 
 def count() -> dict[str, tuple[int, int]]:
     """Cache hits and misses of every kernel, after a step of each basis with a manufactured body force."""
-    from cases.library.mms import setup
-    from cases.study import Run
-    from solver.step import advance
+    from mpm_verify.cases.harness.study import Run
+    from mpm_verify.cases.mms.case import setup
+    from mpm_verify.solver.step import advance
 
-    for method in available("solver.basis"):
+    for method in available("mpm_verify.solver.basis"):
         model, comparison, _ = setup(Run(method, "axis_aligned", "neo_hookean", 8, 4, 0.4))
         advance(model, comparison)
         comparison(model.particles, model.time)

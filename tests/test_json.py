@@ -14,10 +14,10 @@ import fixtures_study as fixtures
 import pytest
 from jsonschema import Draft202012Validator, ValidationError
 
-from cases.library import mms
-from cases.study import NORMS, QUANTITIES, Failure, Result
-from verify.document import SCHEMA, VERSION
-from verify.main import main
+from mpm_verify.cases import mms
+from mpm_verify.cases.harness.study import NORMS, QUANTITIES, Failure, Result
+from mpm_verify.reports.export.document import SCHEMA, VERSION
+from mpm_verify.verify.main import main
 
 Json = dict[str, Any]
 Change = Callable[[Result], Result]
@@ -45,7 +45,18 @@ def validate(document: Json) -> None:
 def real(tmp_path_factory: pytest.TempPathFactory) -> tuple[subprocess.CompletedProcess[str], Path]:
     """Classical MPM beside CPDI; with 1 per cell on 16 cells classical MPM ends with det F <= 0."""
     folder = tmp_path_factory.mktemp("real")
-    command = [sys.executable, "-m", "verify.main", "mms", "--method", "mpm", "--method", "cpdi", "--jobs", "1"]
+    command = [
+        sys.executable,
+        "-m",
+        "mpm_verify.verify.main",
+        "mms",
+        "--method",
+        "mpm",
+        "--method",
+        "cpdi",
+        "--jobs",
+        "1",
+    ]
     command += ["--cells", "8,16,32", "--ppc", "1,4", "--json", "--junit", "below/out.xml", "--out", "study"]
     return subprocess.run(command, capture_output=True, text=True, cwd=folder, timeout=120), folder
 
@@ -95,7 +106,7 @@ def told(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tm
     """Call the command with results changed by a function; exit code, document, JUnit suite."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(
-        "reports.render.render", lambda folder, record=None: folder / "report.html"
+        "mpm_verify.reports.pages.mms.render", lambda folder, record=None: folder / "report.html"
     )  # two seconds a page
 
     def tell(change: Change = lambda result: result, *arguments: str) -> tuple[int, Json, ElementTree.Element]:

@@ -8,18 +8,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cases.checks import load
-from cases.element_paths import TESTS
-from cases.material_checks import law_checks, run
-from cases.material_drawn import limit as limits
-from cases.material_exam import beyond, examine, parameters, study, words
-from cases.records import Outcome
-from reports.figures.element import stress
-from solver.material import mohr_coulomb, ubcsand
-from solver.plugins import available, create
-from verify.main import main
+from mpm_verify.cases.element.checks import law_checks, run
+from mpm_verify.cases.element.drawn import limit as limits
+from mpm_verify.cases.element.exam import beyond, examine, parameters, study, words
+from mpm_verify.cases.element.paths import TESTS
+from mpm_verify.cases.harness.checks import load
+from mpm_verify.cases.judging.records import Outcome
+from mpm_verify.reports.figures.element import stress
+from mpm_verify.solver.material import mohr_coulomb, ubcsand
+from mpm_verify.solver.plugins import available, create
+from mpm_verify.verify.main import main
 
-LAWS = available("solver.material")
+LAWS = available("mpm_verify.solver.material")
 QUICK = [TESTS["isotropic"], TESTS["undrained"]]
 
 
@@ -34,7 +34,7 @@ def verify(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], 
 @pytest.mark.parametrize("name", LAWS)
 def test_every_law_passes_its_own_checks(name: str) -> None:
     """Whatever the law: its tables and limits, and two tests."""
-    found = examine(name, create("solver.material", name), QUICK, 5e3, 20, "")
+    found = examine(name, create("mpm_verify.solver.material", name), QUICK, 5e3, 20, "")
     assert found.checks
     missed = [check for check in found.checks if check.outcome is not Outcome.PASS]
     assert not missed
@@ -44,7 +44,7 @@ def test_every_law_passes_its_own_checks(name: str) -> None:
     "name", ["mohr_coulomb:phi=25,psi=5", "mohr_coulomb:c=100", "ubcsand:Rf=0.9", "ubcsand:Pa=1e5,KGp=8"]
 )
 def test_other_parameters_are_held_against_closed_forms(name: str) -> None:
-    checks = law_checks(create("solver.material", name))
+    checks = law_checks(create("mpm_verify.solver.material", name))
     assert checks
     assert not [check for check in checks if check.outcome is not Outcome.PASS]
     assert not [check for check in checks if check.source == "reference table" and "ubcsand" in name]
@@ -52,8 +52,8 @@ def test_other_parameters_are_held_against_closed_forms(name: str) -> None:
 
 def test_a_wrong_direction_of_flow_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     """Flow along phi in place of psi misses the table, Davis' ratio and the dilation."""
-    law = create("solver.material", "mohr_coulomb")
-    wrong = create("solver.material", "mohr_coulomb:psi=31").constants()
+    law = create("mpm_verify.solver.material", "mohr_coulomb")
+    wrong = create("mpm_verify.solver.material", "mohr_coulomb:psi=31").constants()
     monkeypatch.setattr(mohr_coulomb.MohrCoulomb, "constants", lambda self: wrong)
     missed = {check.name for check in law_checks(law) if check.outcome is not Outcome.PASS}
     assert "plane: largest miss, zz in any place" in missed
@@ -62,8 +62,8 @@ def test_a_wrong_direction_of_flow_is_seen(monkeypatch: pytest.MonkeyPatch) -> N
 
 def test_a_lost_failure_ratio_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     """A kernel that takes Rf as 0.7: the hyperbola is another one."""
-    law = create("solver.material", "ubcsand")
-    wrong = create("solver.material", "ubcsand:Rf=0.7").constants()
+    law = create("mpm_verify.solver.material", "ubcsand")
+    wrong = create("mpm_verify.solver.material", "ubcsand:Rf=0.7").constants()
     monkeypatch.setattr(ubcsand.Ubcsand, "constants", lambda self: wrong)
     missed = [check for check in law_checks(law) if check.outcome is not Outcome.PASS]
     assert len(missed) > 20
@@ -110,7 +110,7 @@ def test_a_path_of_ones_own_is_shown_and_not_judged(
 @pytest.mark.parametrize("name", ["mohr_coulomb", "drucker_prager"])
 def test_first_order_is_told_to_be_expected(name: str) -> None:
     """Where an order is told at all: of paths on which each step is exact there is none."""
-    law, tests = create("solver.material", name), [TESTS["shear_stress"], TESTS["isotropic"]]
+    law, tests = create("mpm_verify.solver.material", name), [TESTS["shear_stress"], TESTS["isotropic"]]
     assert "First order is expected" in examine(name, law, tests, 5e3, 10, "").lead
     flat = examine(name, law, tests[1:], 5e3, 10, "").lead
     assert "First order" not in flat
@@ -124,7 +124,7 @@ def test_second_order_is_not_told_to_be_first() -> None:
 @pytest.mark.parametrize("name", ["mohr_coulomb", "drucker_prager", "mohr_coulomb:psi=20"])
 def test_the_limit_that_is_drawn_is_the_one_that_is_reached(name: str) -> None:
     """Davis' ratio times the vertical stress, in the curves of the page."""
-    law = create("solver.material", name)
+    law = create("mpm_verify.solver.material", name)
     limit = limits(law, 5e3)["limit/shear_stress"]["tau"]
     end = run(law, "shear_stress", 0.3, 5e3, 400).sigma[-1, 3]
     assert end == pytest.approx(limit[0], rel=1e-4)
@@ -136,7 +136,7 @@ def test_the_limit_that_is_drawn_is_the_one_that_is_reached(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["mohr_coulomb:c=10", "drucker_prager:cone=compression", "ubcsand", "hypoelastic"])
 def test_no_limit_is_drawn_where_none_is_known(name: str) -> None:
-    assert not limits(create("solver.material", name), 5e3)
+    assert not limits(create("mpm_verify.solver.material", name), 5e3)
 
 
 def test_parameters_say_what_they_do() -> None:
@@ -150,7 +150,7 @@ def test_parameters_say_what_they_do() -> None:
     cyclic = parameters(ubcsand.Ubcsand(reversal=1.0), 5e3, 10)
     told = [cyclic[name].partition(" ")[2] for name in factors]
     assert told == ["(in the stiffness after a reversal)"] * 2 + ["(no effect)"] * 4
-    assert parameters(create("solver.material", "mohr_coulomb"), 5e3, 10)["phi"] == "31"
+    assert parameters(create("mpm_verify.solver.material", "mohr_coulomb"), 5e3, 10)["phi"] == "31"
 
 
 @pytest.mark.parametrize("reversal", [0.0, 1.0])
@@ -174,7 +174,7 @@ def test_how_often_zz_is_out_of_range_is_told() -> None:
     assert "outside the range" in notes["Isotropic compression"][-1]
     assert "in 100 % of the steps" in notes["Isotropic compression"][-1]
     assert "zz is within the range" in notes["Simple shear at constant vertical stress"][-1]
-    soil = create("solver.material", "mohr_coulomb")
+    soil = create("mpm_verify.solver.material", "mohr_coulomb")
     assert not [line for line in words(soil, study(soil, TESTS["isotropic"], 5e3, 10)) if "zz" in line]
 
 

@@ -10,17 +10,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from cases.mms_study import Sweep
-from mms.manufacture import manufacture
-from solver.elastic import Elastic
-from solver.plugins import available, create, load
-from solver.rate_law import RateLaw
-from solver.state import Floats, Particles
-from verify.main import main
+from mpm_verify.cases.mms.sweep import Sweep
+from mpm_verify.mms.manufacture import manufacture
+from mpm_verify.solver.elastic import Elastic
+from mpm_verify.solver.plugins import available, create, load
+from mpm_verify.solver.rate_law import RateLaw
+from mpm_verify.solver.state import Floats, Particles
+from mpm_verify.verify.main import main
 
-LAWS = available("solver.material")
-ENERGETIC = [name for name in LAWS if hasattr(load("solver.material", name), "energy")]
-ELASTIC = [name for name in LAWS if issubclass(load("solver.material", name), Elastic)]
+LAWS = available("mpm_verify.solver.material")
+ENERGETIC = [name for name in LAWS if hasattr(load("mpm_verify.solver.material", name), "energy")]
+ELASTIC = [name for name in LAWS if issubclass(load("mpm_verify.solver.material", name), Elastic)]
 HOOKEAN = [*ENERGETIC, "hypoelastic"]  # elastic from no stress on, however small it is
 SMALL = {"linear_elastic"}  # consistent with their energy to first order in the amplitude only, as they say
 every_law = pytest.mark.parametrize("name", LAWS)
@@ -80,7 +80,9 @@ def random_f(rng: np.random.Generator, count: int) -> Floats:
 
 
 def parametrised(name: str) -> list[Any]:
-    return [create("solver.material", name + extra) for extra in ("", ":E=70.0,nu=0.45,rho0=3", ":E=2e5,nu=-0.4")]
+    return [
+        create("mpm_verify.solver.material", name + extra) for extra in ("", ":E=70.0,nu=0.45,rho0=3", ":E=2e5,nu=-0.4")
+    ]
 
 
 @pytest.mark.parametrize("name", [name for name in ENERGETIC if name not in SMALL])
@@ -114,7 +116,7 @@ def test_a_small_strain_law_is_consistent_to_first_order(name: str) -> None:
 
 @every_law
 def test_undeformed_is_free_of_stress(name: str) -> None:
-    assert (stress(create("solver.material", name), np.eye(2)[None]) == 0).all()
+    assert (stress(create("mpm_verify.solver.material", name), np.eye(2)[None]) == 0).all()
 
 
 @every_energy
@@ -128,7 +130,7 @@ def test_energy_is_least_where_undeformed(name: str) -> None:
 @every_law
 def test_any_number_of_particles(name: str, count: int) -> None:
     """Row by row the same, whatever the block and its length."""
-    law = create("solver.material", name)
+    law = create("mpm_verify.solver.material", name)
     F = random_f(np.random.default_rng(3), count)
     one = np.concatenate([stress(law, f[None]) for f in F])
     assert np.isfinite(one).any()
@@ -146,7 +148,7 @@ def turned(sigma: Floats, Q: Floats) -> Floats:
 @pytest.mark.parametrize("name", [name for name in ENERGETIC if name not in SMALL])
 def test_objective_and_isotropic(name: str, angle: float) -> None:
     """sigma(Q F) = Q sigma(F) Q^T, and sigma(F Q) = sigma(F)."""
-    law = create("solver.material", name)
+    law = create("mpm_verify.solver.material", name)
     F = random_f(np.random.default_rng(4), 100)
     Q = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
     sigma = stress(law, F)
@@ -173,35 +175,35 @@ def test_small_strain_limit(name: str) -> None:
 @pytest.mark.parametrize("name", ELASTIC)
 def test_bad_parameters(name: str, text: str) -> None:
     with pytest.raises(ValueError, match="must"):
-        create("solver.material", f"{name}:{text}")
+        create("mpm_verify.solver.material", f"{name}:{text}")
 
 
 @every_law
 def test_parameters_are_named(name: str) -> None:
-    own = ", ".join(item.name for item in fields(load("solver.material", name)))
+    own = ", ".join(item.name for item in fields(load("mpm_verify.solver.material", name)))
     assert "rho0" in own
     with pytest.raises(ValueError, match=f"{name} has no parameter 'G'; it has {own}"):
-        create("solver.material", f"{name}:G=1")
+        create("mpm_verify.solver.material", f"{name}:G=1")
     with pytest.raises(ValueError, match="is no number"):
-        create("solver.material", f"{name}:rho0=soft")
+        create("mpm_verify.solver.material", f"{name}:rho0=soft")
     with pytest.raises(ValueError, match=r"rho0 = -1.* must"):
-        create("solver.material", f"{name}:rho0=-1")
+        create("mpm_verify.solver.material", f"{name}:rho0=-1")
     with pytest.raises(ValueError, match=f"choose from .*{name}"):
-        load("solver.material", name + "s")
+        load("mpm_verify.solver.material", name + "s")
 
 
 @every_law
 def test_wave_speed_is_finite_and_of_no_rate(name: str) -> None:
-    c = create("solver.material", name).wave_speed()
+    c = create("mpm_verify.solver.material", name).wave_speed()
     assert 0 < c < np.inf
-    if issubclass(load("solver.material", name), RateLaw):
-        assert create("solver.material", f"{name}:rate=jaumann").wave_speed() == c
+    if issubclass(load("mpm_verify.solver.material", name), RateLaw):
+        assert create("mpm_verify.solver.material", f"{name}:rate=jaumann").wave_speed() == c
 
 
 def test_wave_speed_of_the_elastic_part() -> None:
     """A soil of the same E, nu, rho0 has the same fastest wave: plastic ones are slower."""
     for name in ELASTIC:
-        assert create("solver.material", f"{name}:E=1e4,nu=0.3,rho0=1").wave_speed() == pytest.approx(
+        assert create("mpm_verify.solver.material", f"{name}:E=1e4,nu=0.3,rho0=1").wave_speed() == pytest.approx(
             116.0239, rel=1e-6
         )
 
@@ -209,7 +211,7 @@ def test_wave_speed_of_the_elastic_part() -> None:
 @every_energy
 def test_wave_speed(name: str) -> None:
     """rho0 c^2 is the uniaxial stiffness of the energy; 116.02 for the paper's constants."""
-    assert create("solver.material", name).wave_speed() == pytest.approx(116.0239, rel=1e-6)
+    assert create("mpm_verify.solver.material", name).wave_speed() == pytest.approx(116.0239, rel=1e-6)
     for law in parametrised(name):
         h = 1e-5
         ends = [first_piola(law, np.diag([1 + s * h, 1, 1]))[0, 0] for s in (1, -1)]
@@ -218,13 +220,13 @@ def test_wave_speed(name: str) -> None:
 
 def test_parameters_are_frozen() -> None:
     with pytest.raises(AttributeError):
-        create("solver.material", LAWS[0]).rho0 = 1.0
+        create("mpm_verify.solver.material", LAWS[0]).rho0 = 1.0
 
 
 @pytest.mark.parametrize("name", [name for name in LAWS if name not in ENERGETIC])
 def test_no_solution_is_manufactured_without_an_energy(name: str) -> None:
     """One sentence that names the laws that have one."""
-    law, solution = create("solver.material", name), create("mms.solutions", "axis_aligned")
+    law, solution = create("mpm_verify.solver.material", name), create("mpm_verify.mms.solutions", "axis_aligned")
     with pytest.raises(ValueError, match=f"^{name} has no energy.* must be one of {', '.join(ENERGETIC)}$"):
         manufacture(solution, law, law.rho0)
     with pytest.raises(ValueError, match=f"^{name} has no energy"):
@@ -253,7 +255,7 @@ def test_commands_refuse_a_rate_that_is_none(
     command: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     line = complaint([*command, "--material", "hypoelastic:rate=spin"], monkeypatch, capsys, tmp_path)
-    assert line == f"verify: no rate 'spin'; choose from {', '.join(available('solver.rates'))}\n"
+    assert line == f"verify: no rate 'spin'; choose from {', '.join(available('mpm_verify.solver.rates'))}\n"
 
 
 def test_commands_refuse_a_file_whose_own_law_has_none(

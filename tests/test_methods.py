@@ -8,8 +8,8 @@ import pandas as pd
 import pytest
 from typer.testing import CliRunner
 
-from solver.plugins import METHODS, available
-from verify.main import app
+from mpm_verify.solver.plugins import METHODS, available
+from mpm_verify.verify.main import app
 
 
 def run(*arguments: str) -> tuple[int, str]:

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from mms.exact import ROOM, ROWS
-from mms.hoist import Hoist
-from mms.manufacture import Field, Manufactured, manufacture
-from solver._jit import BLOCK
-from solver.plugins import available, create, load
-from solver.state import Floats
+from mpm_verify.mms.exact import ROOM, ROWS
+from mpm_verify.mms.hoist import Hoist
+from mpm_verify.mms.manufacture import Field, Manufactured, manufacture
+from mpm_verify.solver._jit import BLOCK
+from mpm_verify.solver.plugins import available, create, load
+from mpm_verify.solver.state import Floats
 
 EXTRA = {  # parameters of one's own: other sides, speeds and phases show factors that are one by default
     "axis_aligned": ["phase=0.785", "A=0.2,L=2,C=30,phase=-1.1"],
@@ -30,11 +30,13 @@ EXTRA = {  # parameters of one's own: other sides, speeds and phases show factor
 
 def parameters(name: str) -> list[str]:
     """Names of the parameters of a solution."""
-    return [item.name for item in fields(load("mms.solutions", name))]
+    return [item.name for item in fields(load("mpm_verify.mms.solutions", name))]
 
 
 SOLUTIONS = [
-    f"{name}:{extra}".rstrip(":") for name in available("mms.solutions") for extra in ("", *EXTRA.get(name, []))
+    f"{name}:{extra}".rstrip(":")
+    for name in available("mpm_verify.mms.solutions")
+    for extra in ("", *EXTRA.get(name, []))
 ]
 MATERIALS = ["neo_hookean", "neo_hookean:E=70,nu=0.45,rho0=3", "linear_elastic:E=200,nu=0.1,rho0=2"]
 every = pytest.mark.parametrize("text", SOLUTIONS)
@@ -46,7 +48,10 @@ class Case:
     """A solution in a body, with random places inside it and random times."""
 
     def __init__(self, text: str, material: str = "neo_hookean") -> None:
-        self.solution, self.material = create("mms.solutions", text), create("solver.material", material)
+        self.solution, self.material = (
+            create("mpm_verify.mms.solutions", text),
+            create("mpm_verify.solver.material", material),
+        )
         self.exact: Manufactured = manufacture(self.solution, self.material, self.material.rho0)
         rng = np.random.default_rng(1)
         self.L, self.period = self.solution.L, self.solution.L / self.solution.C
@@ -161,7 +166,7 @@ def test_boundary_conditions(case: Case) -> None:
 
 def no_traction(case: Case) -> None:
     """Free edges: P N = 0 in the solution's own material; inside the body is under stress."""
-    law = create("solver.material", case.solution.material)
+    law = create("mpm_verify.solver.material", case.solution.material)
     exact = manufacture(case.solution, law, law.rho0)
     angle = np.linspace(0, 2 * np.pi, 41)
     N = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
@@ -195,7 +200,9 @@ def test_moving_walls_follow_the_body() -> None:
 )
 def test_reference_values(X: float, Y: float, t: float, u: Any, b: Any) -> None:
     """Recorded values: L = 1, A = 0.05, C = 100, E = 1e4, nu = 0.3, rho0 = 1."""
-    exact = manufacture(create("mms.solutions", "axis_aligned"), create("solver.material", "neo_hookean"), 1.0)
+    exact = manufacture(
+        create("mpm_verify.mms.solutions", "axis_aligned"), create("mpm_verify.solver.material", "neo_hookean"), 1.0
+    )
     np.testing.assert_allclose(exact.u(np.array([[X, Y]]), t)[0], u, rtol=1e-9)
     np.testing.assert_allclose(exact.b(np.array([[X, Y]]), t)[0], b, rtol=1e-9)
 
@@ -272,19 +279,19 @@ def test_hoist() -> None:
 @pytest.mark.parametrize(
     "text",
     ["axis_aligned:A=0.16", "axis_aligned:A=-0.2", "axis_aligned:A=0.1,L=0.5", "clamped_shear:G=0.2", "affine:a=0.3",
-     *(f"{name}:{size}={bad}" for name in available("mms.solutions") for size in ("L", "C", "inner", "outer")
+     *(f"{name}:{size}={bad}" for name in available("mpm_verify.mms.solutions") for size in ("L", "C", "inner", "outer")
        if size in parameters(name) for bad in ("0", "-1", "nan"))],
 )  # fmt: skip
 def test_bad_parameters(text: str) -> None:
     with pytest.raises(ValueError, match="must be"):
-        create("mms.solutions", text)
+        create("mpm_verify.mms.solutions", text)
 
 
-@pytest.mark.parametrize("name", available("mms.solutions"))
+@pytest.mark.parametrize("name", available("mpm_verify.mms.solutions"))
 def test_the_body_never_turns_inside_out(name: str) -> None:
     """At the bounds of the parameters and below, det F > 0 everywhere and always."""
-    solution = load("mms.solutions", name)()
-    exact = manufacture(solution, create("solver.material", "neo_hookean"), 1.0)
+    solution = load("mpm_verify.mms.solutions", name)()
+    exact = manufacture(solution, create("mpm_verify.solver.material", "neo_hookean"), 1.0)
     X = solution.layout(float(solution.upper[0] - solution.lower[0]) / 20, 4).X
     J = [np.linalg.det(exact.F(X, t)).min() for t in np.linspace(0, solution.duration, 33)]
     assert min(J) > 0.3

@@ -22,9 +22,9 @@ from fixtures_plastic import (
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from solver.material.mohr_coulomb import MohrCoulomb
-from solver.plugins import create
-from solver.state import Floats, Particles
+from mpm_verify.solver.material.mohr_coulomb import MohrCoulomb
+from mpm_verify.solver.plugins import create
+from mpm_verify.solver.state import Floats, Particles
 
 COUNT = 10_000
 BARE = {"elastic", "plane", "edge s1 = s2", "edge s2 = s3", "apex"}
@@ -394,7 +394,7 @@ def test_a_lost_strain_is_not_hidden(component: int, value: float) -> None:
 )
 def test_bad_parameters(text: str, message: str) -> None:
     with pytest.raises(ValueError, match=message):
-        create("solver.material", f"mohr_coulomb:{text}")
+        create("mpm_verify.solver.material", f"mohr_coulomb:{text}")
 
 
 @pytest.mark.parametrize("name", ["E", "nu", "rho0", "phi", "psi", "c", "sigma_t"])

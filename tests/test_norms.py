@@ -5,13 +5,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from cases.fit import local_orders
-from cases.norms import CHUNK, SHARES, Norms, compare, new_shares
-from cases.study import NORMS, QUANTITIES
-from mms.manufacture import Manufactured, manufacture
-from solver.material.neo_hookean import NeoHookean
-from solver.plugins import create
-from solver.state import Floats, Particles
+from mpm_verify.cases.harness.study import NORMS, QUANTITIES
+from mpm_verify.cases.judging.fit import local_orders
+from mpm_verify.cases.mms.norms import CHUNK, SHARES, Norms, compare, new_shares
+from mpm_verify.mms.manufacture import Manufactured, manufacture
+from mpm_verify.solver.material.neo_hookean import NeoHookean
+from mpm_verify.solver.plugins import create
+from mpm_verify.solver.state import Floats, Particles
 
 TIMES = (0.001, 0.0034, 0.0102)
 BEHIND = 2.5e-4
@@ -19,7 +19,7 @@ BEHIND = 2.5e-4
 
 @pytest.fixture(scope="module")
 def exact() -> Manufactured:
-    return manufacture(create("mms.solutions", "clamped_shear"), NeoHookean(), 1.0)
+    return manufacture(create("mpm_verify.mms.solutions", "clamped_shear"), NeoHookean(), 1.0)
 
 
 def body(count: int, rng: np.random.Generator, unequal: bool = True) -> Particles:

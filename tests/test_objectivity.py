@@ -7,17 +7,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cases import objectivity, objectivity_block, objectivity_kinematic
-from cases.checks import Examination, load, save
-from cases.objectivity import examine
-from cases.objectivity_block import PRINTED, REST, SMALL, blocks, misses
-from cases.objectivity_exact import SIMPLE_SHEAR, rotated
-from cases.objectivity_words import words
-from cases.records import Outcome
-from cases.runner import InProcess
-from cases.turning_block import Block, turn
-from reports.objectivity_page import page
-from solver.plugins import MISREADINGS, RATES, available
+from mpm_verify.cases.harness.checks import Examination, load, save
+from mpm_verify.cases.harness.runner import InProcess
+from mpm_verify.cases.judging.records import Outcome
+from mpm_verify.cases.objectivity import block as objectivity_block
+from mpm_verify.cases.objectivity import exam as objectivity
+from mpm_verify.cases.objectivity import rates as objectivity_kinematic
+from mpm_verify.cases.objectivity.block import PRINTED, REST, SMALL, blocks, misses
+from mpm_verify.cases.objectivity.exact import SIMPLE_SHEAR, rotated
+from mpm_verify.cases.objectivity.exam import examine
+from mpm_verify.cases.objectivity.turning_block import Block, turn
+from mpm_verify.cases.objectivity.words import words
+from mpm_verify.reports.pages.objectivity import page
+from mpm_verify.solver.plugins import MISREADINGS, RATES, available
 
 COARSE = Block(cells=4)
 WRONG, RIGHT = available(MISREADINGS), available(RATES)

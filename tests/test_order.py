@@ -14,8 +14,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cases.fit import Array, asymptotic_window, contamination, fit_slope, local_orders
-from cases.order import Expectation, Level, Outcome, Quantity, Verdict, judge, judge_family
+from mpm_verify.cases.judging.fit import Array, asymptotic_window, contamination, fit_slope, local_orders
+from mpm_verify.cases.judging.order import Expectation, Level, Outcome, Quantity, Verdict, judge, judge_family
 
 PASS, FAIL, INCONCLUSIVE, ERROR = Outcome
 DET = "det F <= 0 at step 143, particle 17"

@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from cases.library.mms import execute
-from cases.study import Run
-from mms.check import FINE, check, determinant, least_det
-from mms.manufacture import manufacture
-from mms.measure import Sampler
-from solver import plugins
-from solver.plugins import SOLUTIONS, absolute, create, identity, split
-from verify.main import main
+from mpm_verify.cases.harness.study import Run
+from mpm_verify.cases.mms.case import execute
+from mpm_verify.mms.check import FINE, check, determinant, least_det
+from mpm_verify.mms.manufacture import manufacture
+from mpm_verify.mms.measure import Sampler
+from mpm_verify.solver import plugins
+from mpm_verify.solver.plugins import SOLUTIONS, absolute, create, identity, split
+from mpm_verify.verify.main import main
 
 EXAMPLE = "tests/own_solution.py"
 PARTS = """
@@ -38,7 +38,7 @@ def forgotten() -> Iterator[None]:
     """Files are read once a process: not so between tests."""
     yield
     plugins.source.cache_clear()
-    sys.modules["mms.solutions._own"].load.cache_clear()
+    sys.modules["mpm_verify.mms.solutions._own"].load.cache_clear()
 
 
 @pytest.fixture
@@ -56,7 +56,7 @@ def write(tmp_path: Path) -> Write:
 def checked(path: str, material: str | None = None, cells: tuple[int, ...] = ()) -> Any:
     """The solution, after its check in a material, its own if none is named."""
     solution: Any = create(SOLUTIONS, path)
-    check(solution, create("solver.material", material or solution.material), cells)
+    check(solution, create("mpm_verify.solver.material", material or solution.material), cells)
     return solution
 
 
@@ -119,7 +119,7 @@ def test_parameters(write: Write) -> None:
     assert [f.name for f in fields(solution)] == ["A", "B"]
     assert asdict(solution) == {"A": 0.01, "B": 0.03}
     assert solution == create(SOLUTIONS, f"{path}:A=0.01")
-    u = {A: manufacture(create(SOLUTIONS, f"{path}:A={A}"), create("solver.material", "neo_hookean"), 1.0).u
+    u = {A: manufacture(create(SOLUTIONS, f"{path}:A={A}"), create("mpm_verify.solver.material", "neo_hookean"), 1.0).u
          for A in (0.01, 0.02)}  # fmt: skip
     X = np.array([[0.3, 0.4]])
     np.testing.assert_allclose(u[0.02](X, 0.005)[0] / u[0.01](X, 0.005)[0], [2, 1], rtol=1e-12)
@@ -221,7 +221,7 @@ def test_no_such_file() -> None:
     with pytest.raises(ValueError, match=r"choose from .*, or give a file"):
         create(SOLUTIONS, "nowhere")
     with pytest.raises(ValueError, match=r"no material 'own.py'; choose from"):
-        create("solver.material", "own.py")
+        create("mpm_verify.solver.material", "own.py")
 
 
 DIP = "sp.Matrix([-A * (x - 0.50371) * sp.exp(-((x - 0.50371)**2 + (y - 0.49812)**2) / 0.012**2) * s * w, 0])"
@@ -231,7 +231,7 @@ DIP = "sp.Matrix([-A * (x - 0.50371) * sp.exp(-((x - 0.50371)**2 + (y - 0.49812)
 def test_a_dip_between_the_samples(write: Write, A: float, good: bool) -> None:
     """det F is 1 - 2 A at its least, in a spot of a thousandth of the side, which no sample hits."""
     solution: Any = create(SOLUTIONS, write(DIP, more=f", A={A}"))
-    sampler = Sampler(manufacture(solution, create("solver.material", "neo_hookean"), 1.0))
+    sampler = Sampler(manufacture(solution, create("mpm_verify.solver.material", "neo_hookean"), 1.0))
     low, high = np.array([0.0, 0.0, 0.0]), np.array([solution.duration, 1.0, 1.0])
     axes = np.meshgrid(*[np.linspace(0, 1, n) for n in FINE], indexing="ij", sparse=True)
     assert determinant(sampler, low, high, *axes).min() > 0.01
@@ -252,7 +252,7 @@ def test_command(
     """`verify audit own.py`: an audit, and exit code 2 with one line for a bad file."""
     for u, code in ((U, 0), ("sp.Matrix([s * w, 0])", 2)):
         plugins.source.cache_clear()
-        sys.modules["mms.solutions._own"].load.cache_clear()  # type: ignore[attr-defined]
+        sys.modules["mpm_verify.mms.solutions._own"].load.cache_clear()  # type: ignore[attr-defined]
         monkeypatch.setattr(sys, "argv", ["verify", *words, write(u)])
         with pytest.raises(SystemExit) as ended:
             main()

@@ -41,15 +41,15 @@ from fixtures_rates import (
     walk,
 )
 
-from cases.kinematic import follow, sheared, stretched_turn
-from cases.objectivity_exact import SIMPLE_SHEAR, compressed
-from cases.objectivity_kinematic import STEPS, order_errors, simple_shear, slope
-from cases.turning_block import turn
-from solver.material.hypoelastic import Hypoelastic
-from solver.plugins import RATES, create
-from solver.rate_law import objective
-from solver.rates.logarithmic import bend
-from solver.state import Floats
+from mpm_verify.cases.objectivity.exact import SIMPLE_SHEAR, compressed
+from mpm_verify.cases.objectivity.kinematic import follow, sheared, stretched_turn
+from mpm_verify.cases.objectivity.rates import STEPS, order_errors, simple_shear, slope
+from mpm_verify.cases.objectivity.turning_block import turn
+from mpm_verify.solver.material.hypoelastic import Hypoelastic
+from mpm_verify.solver.plugins import RATES, create
+from mpm_verify.solver.rate_law import objective
+from mpm_verify.solver.rates.logarithmic import bend
+from mpm_verify.solver.state import Floats
 
 MISS = 0.1  # of the stress: what is missed by so much is seen
 SOILS = [name for name in LAWS if name != "hypoelastic"]
@@ -263,7 +263,7 @@ STEP = CONSTANT | {"explicit_jaumann", "same_rotation"}  # and one step by 1 rad
 
 def miss_of_a_step(rate: str, angle: float) -> float:
     """How far one step of rotation is from the stress turned; the law is so soft that the strain does not count."""
-    law = create("solver.material", f"hypoelastic:E=1,rate={rate}")
+    law = create("mpm_verify.solver.material", f"hypoelastic:E=1,rate={rate}")
     p = step_to(law, started(law, np.eye(2)[None], CONFINED), turn(angle)[None])
     return float(np.abs(p.sigma[0] - turned(CONFINED, angle)).max() / np.abs(CONFINED).max())
 
@@ -452,7 +452,7 @@ def test_a_lost_deformation_gives_no_stress(name: str, rate: str, lost: str) -> 
 
 def test_no_such_rate() -> None:
     with pytest.raises(ValueError, match=r"no rate 'spin'; choose from green_naghdi, jaumann, logarithmic, truesdell"):
-        create("solver.material", "hypoelastic:rate=spin")
+        create("mpm_verify.solver.material", "hypoelastic:rate=spin")
     law = law_of("hypoelastic")
     p = started(law, np.eye(2)[None], CONFINED)
     p.F_old = np.zeros((1, 0))
@@ -463,7 +463,7 @@ def test_no_such_rate() -> None:
 def test_truesdell_has_its_own_limit_and_the_others_one() -> None:
     """Why its order is measured against another closed form: without rotation it is lam (1 - 1/stretch) across."""
     for rate in RIGHT:
-        law = create("solver.material", f"hypoelastic:E=1,rate={rate}")
+        law = create("mpm_verify.solver.material", f"hypoelastic:E=1,rate={rate}")
         end = follow(law, lambda t: np.diag([1 - 0.2 * t, 1.0]), 200).sigma[-1]
         np.testing.assert_allclose(end[:3], compressed(0.8, law.lam, law.mu, rate), rtol=1e-5)
     assert abs(compressed(0.8, 1.0, 1.0, "truesdell") - compressed(0.8, 1.0, 1.0, "jaumann")).max() > 0.02
@@ -472,7 +472,7 @@ def test_truesdell_has_its_own_limit_and_the_others_one() -> None:
 def test_shear_that_comes_back() -> None:
     """There and back by the same steps gives the stress back to round-off, by every rate."""
     for rate in RIGHT:
-        law = create("solver.material", f"hypoelastic:E=1,rate={rate}")
+        law = create("mpm_verify.solver.material", f"hypoelastic:E=1,rate={rate}")
         end = follow(law, lambda t: sheared(2.0)(1 - abs(2 * t - 1)), 40).sigma[-1]
         assert np.abs(end).max() < 1e-13, rate
     assert set(RIGHT) == set(SIMPLE_SHEAR), f"a new rate of {RATES} needs its closed form"

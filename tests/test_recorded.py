@@ -2,15 +2,15 @@
 
 import pytest
 
-from cases.expectations import RECORDED
-from cases.library.mms import execute
-from cases.methods_study import Comparison, build_methods
-from cases.mms_study import canonical
-from cases.runner import InProcess, run_study
-from cases.store import Store
-from cases.study import Result, Run
-from cases.verdicts import findings
-from solver.plugins import MATERIALS, METHODS, SOLUTIONS, available, create
+from mpm_verify.cases.harness.runner import InProcess, run_study
+from mpm_verify.cases.harness.store import Store
+from mpm_verify.cases.harness.study import Result, Run
+from mpm_verify.cases.harness.verdicts import findings
+from mpm_verify.cases.mms.case import execute
+from mpm_verify.cases.mms.expectations import RECORDED
+from mpm_verify.cases.mms.methods import Comparison, build_methods
+from mpm_verify.cases.mms.sweep import canonical
+from mpm_verify.solver.plugins import MATERIALS, METHODS, SOLUTIONS, available, create
 
 pytestmark = pytest.mark.slow
 

@@ -5,8 +5,8 @@ import math
 
 import pytest
 
-from cases.library.mms import execute
-from cases.study import Run
+from mpm_verify.cases.harness.study import Run
+from mpm_verify.cases.mms.case import execute
 
 CELLS = (8, 16, 32, 64, 128)
 CPDI = {

@@ -13,16 +13,16 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from cases import study as contract
-from cases.order import Expectation
-from cases.store import Store, StoreError
-from cases.study import Declared, Failure, Run
-from mms.spots import ALWAYS
-from reports import audited, words
-from reports.cards import cards
-from reports.figures.error_field import choose, domains
-from reports.render import render
-from reports.stored import read
+from mpm_verify.cases.harness import study as contract
+from mpm_verify.cases.harness.store import Store, StoreError
+from mpm_verify.cases.harness.study import Declared, Failure, Run
+from mpm_verify.cases.judging.order import Expectation
+from mpm_verify.mms.spots import ALWAYS
+from mpm_verify.reports.components import audited, words
+from mpm_verify.reports.components.cards import cards
+from mpm_verify.reports.figures.error_field import choose, domains
+from mpm_verify.reports.frames import read
+from mpm_verify.reports.pages.mms import render
 
 
 @pytest.fixture(autouse=True)

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from cases.store import Store
+from mpm_verify.cases.harness.store import Store
 
-VERIFY = [sys.executable, "-m", "verify.main", "mms"]
-POOL = "import verify.conduct; verify.conduct.SMALL = 0; import verify.main; verify.main.main()"
+VERIFY = [sys.executable, "-m", "mpm_verify.verify.main", "mms"]
+POOL = "from mpm_verify.verify import conduct, main; conduct.SMALL = 0; main.main()"
 WITH_WORKERS = [sys.executable, "-c", POOL]  # so little work would be done without worker processes
 EIGHT = """
 [run]

@@ -4,7 +4,7 @@ from math import inf
 
 import pytest
 
-from cases.richardson import FORMAL, LEAST, extrapolate
+from mpm_verify.cases.judging.richardson import FORMAL, LEAST, extrapolate
 
 LEVELS = [(1.0, 2.0, 4.0), (1 / 42, 1 / 28, 1 / 14), (0.3, 0.7, 0.8)]
 

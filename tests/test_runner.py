@@ -11,11 +11,11 @@ import fixtures_study as fixtures
 import numpy as np
 import pytest
 
-from cases.library import mms
-from cases.mms_study import Sweep, build
-from cases.runner import RunnerError, Ticker, cost, pending, process_pool, run_study
-from cases.store import Arrays, Store, StoreError
-from cases.study import Result, Run, Study
+from mpm_verify.cases import mms
+from mpm_verify.cases.harness.runner import RunnerError, Ticker, cost, pending, process_pool, run_study
+from mpm_verify.cases.harness.store import Arrays, Store, StoreError
+from mpm_verify.cases.harness.study import Result, Run, Study
+from mpm_verify.cases.mms.sweep import Sweep, build
 
 
 class Serial(Executor):
@@ -82,7 +82,7 @@ def test_results_of_other_sources_are_run_again(
     study = small()
     store = opened(tmp_path, study)
     run_study(study, store, Serial(), 1)
-    monkeypatch.setattr("cases.study.sources_digest", lambda: "changed")
+    monkeypatch.setattr("mpm_verify.cases.harness.study.sources_digest", lambda: "changed")
     assert len(pending(study, store)) == len(study.runs)
 
 

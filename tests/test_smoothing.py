@@ -5,14 +5,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from solver.basis.cpdi import Cpdi
-from solver.boundary import box
-from solver.layout import rectangle
-from solver.material.hypoelastic import Hypoelastic
-from solver.material.mohr_coulomb import MohrCoulomb
-from solver.plugins import SMOOTHINGS, available, create
-from solver.state import Floats, Grid
-from solver.step import Model, advance
+from mpm_verify.solver.basis.cpdi import Cpdi
+from mpm_verify.solver.boundary import box
+from mpm_verify.solver.layout import rectangle
+from mpm_verify.solver.material.hypoelastic import Hypoelastic
+from mpm_verify.solver.material.mohr_coulomb import MohrCoulomb
+from mpm_verify.solver.plugins import SMOOTHINGS, available, create
+from mpm_verify.solver.state import Floats, Grid
+from mpm_verify.solver.step import Model, advance
 
 DX = 0.1
 KINDS = ["volumetric", "deviatoric", "full:beta=0.9"]
@@ -219,7 +219,7 @@ def test_admissibility() -> None:
 @pytest.mark.parametrize("kind", ["volumetric", "deviatoric", "full", "fbar"])
 def test_it_runs_with_every_order_of_the_step(kind: str, stress: str) -> None:
     """And changes the outcome, of a block that falls on the floor."""
-    from solver.model import Scheme
+    from mpm_verify.solver.model import Scheme
 
     ends = []
     for smoothing in (None, kind):
@@ -246,7 +246,7 @@ def test_refusals(name: str) -> None:
     ):
         with pytest.raises(ValueError, match=says):
             create(SMOOTHINGS, f"{name}:{parameters}")
-    for law in (Hypoelastic(rate="truesdell"), create("solver.material", "neo_hookean")):
+    for law in (Hypoelastic(rate="truesdell"), create("mpm_verify.solver.material", "neo_hookean")):
         with pytest.raises(ValueError, match="must have a law in rate form"):
             model(name, law)
     with pytest.raises(ValueError, match="must be rate"):

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from mms.exact import ROOM, ROWS
-from mms.manufacture import Manufactured, manufacture
-from solver._jit import BLOCK
-from solver.plugins import create, load
-from solver.state import Floats
+from mpm_verify.mms.exact import ROOM, ROWS
+from mpm_verify.mms.manufacture import Manufactured, manufacture
+from mpm_verify.solver._jit import BLOCK
+from mpm_verify.solver.plugins import create, load
+from mpm_verify.solver.state import Floats
 
 NAMES = ["generalised_vortex", "expanding_ring", "bar", "swirl"]
 EXTRA = [
@@ -29,8 +29,8 @@ STENCIL = ((1, 3 / 4), (2, -3 / 20), (3, 1 / 60))  # sixth order
 @cache
 def made(text: str, material: str = "") -> tuple[Any, Any, Manufactured]:
     """Solution, material (its own unless another is named), fields."""
-    solution = create("mms.solutions", text)
-    law = create("solver.material", material or solution.material)
+    solution = create("mpm_verify.mms.solutions", text)
+    law = create("mpm_verify.solver.material", material or solution.material)
     return solution, law, manufacture(solution, law, law.rho0)
 
 
@@ -265,7 +265,7 @@ def test_the_swirl_starts_with_velocity_and_acceleration() -> None:
 @pytest.mark.parametrize("name", ["generalised_vortex", "expanding_ring"])
 def test_rings_have_room(name: str) -> None:
     """The area is exact, domains lie between the radii, and two cells of clearance are left on each side."""
-    solution = load("mms.solutions", name)()
+    solution = load("mpm_verify.mms.solutions", name)()
     inner, outer = RADII[name]
     for cells in (8, 16, 33):
         dx = float(solution.upper[0] - solution.lower[0]) / cells
@@ -287,7 +287,7 @@ def test_rings_have_room(name: str) -> None:
 )  # fmt: skip
 def test_bad_parameters(text: str) -> None:
     with pytest.raises(ValueError, match=r"must be"):
-        create("mms.solutions", text)
+        create("mpm_verify.mms.solutions", text)
 
 
 def test_the_ring_keeps_its_stretches_below_its_bound() -> None:

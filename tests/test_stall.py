@@ -7,15 +7,15 @@ from functools import cache
 import fixtures_study as fixtures
 import pytest
 
-from cases.library import mms
-from cases.mms_study import Sweep, build
-from cases.order import Expectation
-from cases.stall import Cause, Finding, Measured, Peer, Stall, explain
-from cases.study import Declared, Failure, Result, Run, Study
-from cases.verdicts import Finding as Found
-from cases.verdicts import doublings, findings
-from reports import stalls as told
-from solver._jit import use_threads
+from mpm_verify.cases import mms
+from mpm_verify.cases.harness.study import Declared, Failure, Result, Run, Study
+from mpm_verify.cases.harness.verdicts import Finding as Found
+from mpm_verify.cases.harness.verdicts import doublings, findings
+from mpm_verify.cases.judging.order import Expectation
+from mpm_verify.cases.judging.stall import Cause, Finding, Measured, Peer, Stall, explain
+from mpm_verify.cases.mms.sweep import Sweep, build
+from mpm_verify.reports.components import stalls as told
+from mpm_verify.solver._jit import use_threads
 
 CELLS = (8, 16, 32, 64)
 AT_64 = 6.4e-3 / 64  # what second order gives there

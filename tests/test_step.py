@@ -5,20 +5,28 @@ from typing import Any
 import numpy as np
 import pytest
 
-from cases.library import mms
-from cases.study import Run
-from solver._jit import BLOCK
-from solver.boundary import box
-from solver.layout import rectangle
-from solver.material.neo_hookean import NeoHookean
-from solver.plugins import available, load
-from solver.state import Grid, Particles
-from solver.step import Model, RunFailed, Scheme, advance, check_time_step, grid_to_particles, particles_to_grid
-from solver.transfers._passes import advect
-from solver.transfers.flip import Flip
-from solver.transfers.pic import Pic
+from mpm_verify.cases import mms
+from mpm_verify.cases.harness.study import Run
+from mpm_verify.solver._jit import BLOCK
+from mpm_verify.solver.boundary import box
+from mpm_verify.solver.layout import rectangle
+from mpm_verify.solver.material.neo_hookean import NeoHookean
+from mpm_verify.solver.plugins import available, load
+from mpm_verify.solver.state import Grid, Particles
+from mpm_verify.solver.step import (
+    Model,
+    RunFailed,
+    Scheme,
+    advance,
+    check_time_step,
+    grid_to_particles,
+    particles_to_grid,
+)
+from mpm_verify.solver.transfers._passes import advect
+from mpm_verify.solver.transfers.flip import Flip
+from mpm_verify.solver.transfers.pic import Pic
 
-BASES = available("solver.basis")
+BASES = available("mpm_verify.solver.basis")
 LAW = NeoHookean(E=1e3, nu=0.3, rho0=1.0)
 SOFT = NeoHookean(E=10.0, nu=0.3, rho0=1.0)  # round-off is not magnified by waves between nodes of hardly any mass
 DX, DT = 1 / 16, 1e-4
@@ -38,7 +46,7 @@ def model(
 ) -> Model:
     """A body in the unit square: the places `keep(X)` chooses, the middle by default, three cells from the walls."""
     grid = Grid(DX, np.zeros(2), np.ones(2))
-    basis = load("solver.basis", name)()
+    basis = load("mpm_verify.solver.basis", name)()
     whole = basis.populate(rectangle(grid.lower, grid.upper, DX, 4), LAW.rho0)
     chosen = keep(whole.X) if keep else (np.abs(whole.X - 0.5) < 5 * DX).all(axis=1)
     body = select(whole, chosen)

@@ -11,10 +11,10 @@ import fixtures_study as fixtures
 import numpy as np
 import pytest
 
-from cases import study as contract
-from cases.order import Expectation
-from cases.store import Store, StoreError
-from cases.study import Declared, Failure, Result, Run, Study, sources_digest
+from mpm_verify.cases.harness import study as contract
+from mpm_verify.cases.harness.store import Store, StoreError
+from mpm_verify.cases.harness.study import Declared, Failure, Result, Run, Study, sources_digest
+from mpm_verify.cases.judging.order import Expectation
 
 RUN = Run("cpdi", "axis_aligned", "neo_hookean", 8, 4, 0.4)
 OTHER = {str: "other", int: 7, float: 0.125, tuple: (0.25, 0.0)}
@@ -120,11 +120,11 @@ ALONE = tuple(f"cases/{name}.py" for name in ("norms", "gaps", "packing", "memor
 @pytest.fixture
 def tree(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A small tree of sources in place of the installed one."""
-    for name in (*SOURCES, *ALONE, "cases/order.py", "reports/render.py"):
+    for name in (*SOURCES, *ALONE, "cases/judging/order.py", "reports/pages/mms.py"):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text("x = 1\n")
-    monkeypatch.setattr("cases.study.TOP", tmp_path)
-    monkeypatch.setattr("solver.sources.TOP", tmp_path)
+    monkeypatch.setattr("mpm_verify.cases.harness.study.TOP", tmp_path)
+    monkeypatch.setattr("mpm_verify.solver.sources.TOP", tmp_path)
     return tmp_path
 
 
@@ -135,7 +135,7 @@ def test_sources_that_make_numbers_count(tree: Path, name: str) -> None:
     assert sources_digest.__wrapped__() != before
 
 
-@pytest.mark.parametrize("name", ["cases/order.py", "reports/render.py"])
+@pytest.mark.parametrize("name", ["cases/judging/order.py", "reports/pages/mms.py"])
 def test_a_verdict_or_report_is_no_reason_to_run_again(tree: Path, name: str) -> None:
     before = sources_digest.__wrapped__()
     (tree / name).write_text("x = 2\n")

@@ -10,18 +10,18 @@ from typing import Any
 import numpy as np
 import pytest
 
-from solver.plugins import available, camel, load
-from solver.sources import TOP
+from mpm_verify.solver.plugins import available, camel, load
+from mpm_verify.solver.sources import TOP
 
 FLOORS = ("solver", "mms", "cases", "reports", "verify")  # from the ground up
 PLUGINS = {
-    "solver.basis": {"support", "order", "fill"},
-    "solver.material": {"start", "update", "wave_speed"},
-    "solver.rates": {"unrotate", "rotate", "order"},
-    "solver.misreadings": {"unrotate", "rotate", "order"},
-    "solver.smoothing": {"of", "where", "stress", "strain", "check"},
-    "solver.transfers": {"share", "start", "give", "filter", "take"},
-    "mms.solutions": {"displacement", "boundary", "lower", "upper", "duration"},
+    "mpm_verify.solver.basis": {"support", "order", "fill"},
+    "mpm_verify.solver.material": {"start", "update", "wave_speed"},
+    "mpm_verify.solver.rates": {"unrotate", "rotate", "order"},
+    "mpm_verify.solver.misreadings": {"unrotate", "rotate", "order"},
+    "mpm_verify.solver.smoothing": {"of", "where", "stress", "strain", "check"},
+    "mpm_verify.solver.transfers": {"share", "start", "give", "filter", "take"},
+    "mpm_verify.mms.solutions": {"displacement", "boundary", "lower", "upper", "duration"},
 }
 FILES = sorted(file for floor in FLOORS for file in (TOP / floor).rglob("*.py"))
 
@@ -40,10 +40,15 @@ def imported(source: str) -> Iterator[str]:
                 yield str(start.value)
 
 
+def floor_of(module: str) -> str:
+    """Package below mpm_verify that a module is in; of anything else its first name."""
+    return module.removeprefix("mpm_verify.").partition(".")[0]
+
+
 def upward(floor: str, source: str) -> list[str]:
     """Imports of floors above, and of the tests."""
     above = {*FLOORS[FLOORS.index(floor) + 1 :], "tests"}
-    return [module for module in imported(source) if module.partition(".")[0] in above]
+    return [module for module in imported(source) if floor_of(module) in above]
 
 
 @pytest.mark.parametrize("file", FILES, ids=lambda file: file.relative_to(TOP).as_posix())
@@ -55,11 +60,11 @@ def test_imports_point_down(file: Path) -> None:
 @pytest.mark.parametrize(
     "source",
     [
-        "import cases.study",
+        "import mpm_verify.cases.harness.study",
         "from reports import render",
-        "def f():\n    from verify.main import main",
-        "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from cases.study import Run",
-        "from importlib import import_module\nimport_module(f'cases.library.{name}')",
+        "def f():\n    from mpm_verify.verify.main import main",
+        "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from mpm_verify.cases.harness.study import Run",
+        "from importlib import import_module\nimport_module(f'mpm_verify.cases.{name}')",
     ],
 )
 def test_an_upward_import_is_seen(source: str) -> None:
@@ -89,11 +94,11 @@ def test_a_plugin_holds_what_its_name_promises(package: str, name: str) -> None:
     plugin()  # every parameter has a default
 
 
-@pytest.mark.parametrize("name", available("solver.basis"))
+@pytest.mark.parametrize("name", available("mpm_verify.solver.basis"))
 def test_a_basis_has_the_one_signature(name: str) -> None:
-    from solver.weights import FILL
+    from mpm_verify.solver.weights import FILL
 
-    basis: Any = load("solver.basis", name)
+    basis: Any = load("mpm_verify.solver.basis", name)
     assert basis.fill.signatures == [FILL.args]
     assert basis.fill.nopython_signatures[0].return_type == FILL.return_type
     assert isinstance(basis.support, int)
@@ -105,54 +110,60 @@ def one_signature(kernel: Any, signature: Any) -> None:
     assert kernel.nopython_signatures[0].return_type == signature.return_type
 
 
-FRAMES = [(package, name) for package in ("solver.rates", "solver.misreadings") for name in available(package)]
+FRAMES = [
+    (package, name)
+    for package in ("mpm_verify.solver.rates", "mpm_verify.solver.misreadings")
+    for name in available(package)
+]
 
 
 @pytest.mark.parametrize(("package", "name"), FRAMES)
 def test_a_rate_has_the_two_signatures(package: str, name: str) -> None:
-    from solver.objective import ROTATE, UNROTATE, Rate
+    from mpm_verify.solver.objective import ROTATE, UNROTATE, Rate
 
     rate: Any = load(package, name)
     assert issubclass(rate, Rate)
     one_signature(rate.unrotate, UNROTATE)
     one_signature(rate.rotate, ROTATE)
-    assert rate.order == 2.0 if package == "solver.rates" else rate.order in (0.0, 1.0)
+    assert rate.order == 2.0 if package == "mpm_verify.solver.rates" else rate.order in (0.0, 1.0)
 
 
-@pytest.mark.parametrize("name", available("solver.material"))
+@pytest.mark.parametrize("name", available("mpm_verify.solver.material"))
 def test_a_law_is_of_one_of_two_forms(name: str) -> None:
     """A function of F with its energy, or in rate form with one kernel of the one signature."""
-    from solver.objective import RESPOND
-    from solver.rate_law import RateLaw
+    from mpm_verify.solver.objective import RESPOND
+    from mpm_verify.solver.rate_law import RateLaw
 
-    law: Any = load("solver.material", name)
+    law: Any = load("mpm_verify.solver.material", name)
     assert issubclass(law, RateLaw) != hasattr(law, "energy")
     if issubclass(law, RateLaw):
         one_signature(law.respond, RESPOND)
         assert law().initial(np.zeros((3, 4))).shape == (3, len(law.memory))
-        assert law().rate in available("solver.rates")  # no misreading by default
+        assert law().rate in available("mpm_verify.solver.rates")  # no misreading by default
 
 
-@pytest.mark.parametrize("name", available("cases.library"))
+@pytest.mark.parametrize("name", available("mpm_verify.cases"))
 def test_a_case_can_be_executed(name: str) -> None:
     from importlib import import_module
 
-    assert callable(import_module(f"cases.library.{name}").execute)
+    assert callable(import_module(f"mpm_verify.cases.{name}.case").execute)
 
 
 def test_names_of_plugins() -> None:
     assert camel("neo_hookean") == "NeoHookean"
-    assert {"mpm", "cpdi"} <= set(available("solver.basis"))
-    assert not set(available("solver.rates")) & set(available("solver.misreadings")), "RateLaw looks for both"
+    assert {"mpm", "cpdi"} <= set(available("mpm_verify.solver.basis"))
+    assert not set(available("mpm_verify.solver.rates")) & set(available("mpm_verify.solver.misreadings")), (
+        "RateLaw looks for both"
+    )
     assert not [name for package in PLUGINS for name in available(package) if name.startswith("_")]
     with pytest.raises(ValueError, match=r"no method 'fem'; choose from .*cpdi, .*mpm"):
-        load("solver.basis", "fem")
+        load("mpm_verify.solver.basis", "fem")
 
 
 HEAVY = ("numba", "sympy", "numpy", "scipy", "pandas", "matplotlib", "llvmlite")
 PROBE = f"""
 import sys
-from verify.main import main
+from mpm_verify.verify.main import main
 try:
     main()
 except SystemExit as end:
@@ -173,7 +184,7 @@ def test_help_is_light(words: list[str]) -> None:
     if words[0] == "list":
         assert all(name in done.stdout for _, name in NAMES)
     if words == ["mms", "--help"]:
-        assert all(name in done.stdout for name in available("solver.basis"))
+        assert all(name in done.stdout for name in available("mpm_verify.solver.basis"))
 
 
 def test_the_probe_sees_what_is_imported() -> None:

@@ -8,20 +8,20 @@ import numba
 import numpy as np
 import pytest
 
-from cases.library.mms import setup
-from cases.runner import process_pool, run_study
-from cases.store import Store
-from cases.study import Run, Study
-from solver._jit import use_threads
-from solver.boundary import box
-from solver.layout import rectangle
-from solver.material.neo_hookean import NeoHookean
-from solver.plugins import SOLUTIONS, available, create, load
-from solver.slabs import WIDTH, Slabs
-from solver.state import Grid, Particles
-from solver.step import Model, RunFailed, Scheme, advance, particles_to_grid
+from mpm_verify.cases.harness.runner import process_pool, run_study
+from mpm_verify.cases.harness.store import Store
+from mpm_verify.cases.harness.study import Run, Study
+from mpm_verify.cases.mms.case import setup
+from mpm_verify.solver._jit import use_threads
+from mpm_verify.solver.boundary import box
+from mpm_verify.solver.layout import rectangle
+from mpm_verify.solver.material.neo_hookean import NeoHookean
+from mpm_verify.solver.plugins import SOLUTIONS, available, create, load
+from mpm_verify.solver.slabs import WIDTH, Slabs
+from mpm_verify.solver.state import Grid, Particles
+from mpm_verify.solver.step import Model, RunFailed, Scheme, advance, particles_to_grid
 
-BASES = available("solver.basis")
+BASES = available("mpm_verify.solver.basis")
 LAW = NeoHookean(E=1.0, nu=0.3, rho0=1.0)
 ARRAYS = ("X", "x", "v", "F", "sigma", "m", "V0", "domain")
 USUAL = Scheme()
@@ -35,7 +35,7 @@ def still(p: Particles, t: float) -> None:
 def channel(name: str, columns: int = 64, rows: int = 12, order: Any = None, scheme: Scheme = USUAL) -> Model:
     """A body of 6 x 6 cells near the left end of a channel with cells of side one, presented in the given order."""
     grid = Grid(1.0, np.zeros(2), np.array([columns, rows], dtype=float))
-    basis = load("solver.basis", name)()
+    basis = load("mpm_verify.solver.basis", name)()
     whole = basis.populate(rectangle(grid.lower, grid.upper, grid.dx, 4), LAW.rho0)
     keep = np.flatnonzero((np.abs(whole.X - [4, rows / 2]) < 3).all(axis=1))
     keep = keep if order is None else keep[order]
@@ -70,10 +70,13 @@ def test_order_of_presentation(name: str, monkeypatch: pytest.MonkeyPatch) -> No
 
 
 @pytest.mark.parametrize("stress", ["usl", "musl", "usf"])
-@pytest.mark.parametrize("transfer", available("solver.transfers"))
+@pytest.mark.parametrize("transfer", available("mpm_verify.solver.transfers"))
 def test_order_of_presentation_with_every_transfer(transfer: str, stress: str) -> None:
     """What a transfer keeps of a particle travels with it across the slabs."""
-    scheme, order = Scheme(create("solver.transfers", transfer), stress), np.random.default_rng(1).permutation(144)
+    scheme, order = (
+        Scheme(create("mpm_verify.solver.transfers", transfer), stress),
+        np.random.default_rng(1).permutation(144),
+    )
     plain, shuffled = (fly(channel("cpdi", order=o, scheme=scheme), 140).particles for o in (None, order))
     assert plain.x[:, 0].min() > 5 * WIDTH
     for array in (*ARRAYS, "B"):
@@ -173,7 +176,7 @@ needs_two = pytest.mark.skipif(numba.config.NUMBA_NUM_THREADS < 2, reason="one p
 
 
 @needs_two
-@pytest.mark.parametrize("solution", available("mms.solutions"))
+@pytest.mark.parametrize("solution", available("mpm_verify.mms.solutions"))
 @every_basis
 def test_threads_give_the_same_bits(name: str, solution: str) -> None:
     assert after(name, solution, 1) == after(name, solution, 2)
@@ -181,7 +184,7 @@ def test_threads_give_the_same_bits(name: str, solution: str) -> None:
 
 @needs_two
 @pytest.mark.parametrize("stress", ["usl", "musl", "usf"])
-@pytest.mark.parametrize("transfer", available("solver.transfers"))
+@pytest.mark.parametrize("transfer", available("mpm_verify.solver.transfers"))
 def test_threads_give_the_same_bits_with_every_transfer(transfer: str, stress: str) -> None:
     one, two = (after("cpdi", "clamped_shear", threads, transfer=transfer, stress=stress) for threads in (1, 2))
     assert one == two

@@ -8,17 +8,25 @@ from typing import Any
 import numpy as np
 import pytest
 
-from solver._jit import BLOCK, use_threads
-from solver.boundary import box, moving
-from solver.layout import rectangle
-from solver.material.neo_hookean import NeoHookean
-from solver.plugins import available, create, load
-from solver.state import Floats, Grid, Particles
-from solver.step import Model, RunFailed, Scheme, advance, equation_of_motion, grid_to_particles, particles_to_grid
-from solver.transfers import _passes
-from solver.transfers.apic import Apic
+from mpm_verify.solver._jit import BLOCK, use_threads
+from mpm_verify.solver.boundary import box, moving
+from mpm_verify.solver.layout import rectangle
+from mpm_verify.solver.material.neo_hookean import NeoHookean
+from mpm_verify.solver.plugins import available, create, load
+from mpm_verify.solver.state import Floats, Grid, Particles
+from mpm_verify.solver.step import (
+    Model,
+    RunFailed,
+    Scheme,
+    advance,
+    equation_of_motion,
+    grid_to_particles,
+    particles_to_grid,
+)
+from mpm_verify.solver.transfers import _passes
+from mpm_verify.solver.transfers.apic import Apic
 
-BASES = available("solver.basis")
+BASES = available("mpm_verify.solver.basis")
 TRANSFERS = ("flip", "flip:share=0.95", "pic", "apic", "fmpm:order=2", "fmpm:order=4")
 ORDERS = ("usl", "musl", "usf")
 LAW = NeoHookean(E=1e3, nu=0.3, rho0=1.0)
@@ -35,7 +43,7 @@ def one_thread() -> None:
 
 
 def test_every_transfer_is_looked_at() -> None:
-    assert {name.partition(":")[0] for name in TRANSFERS} == set(available("solver.transfers"))
+    assert {name.partition(":")[0] for name in TRANSFERS} == set(available("mpm_verify.solver.transfers"))
 
 
 def still(p: Particles, t: float) -> None:
@@ -51,11 +59,11 @@ def go(m: Model, steps: int) -> None:
 def model(name: str, transfer: str, order: str = "usl", dt: float = 1e-4, half: int = 5, kind: Any = "free") -> Model:
     """A square body of 2 `half` cells in the middle of the unit square, at rest."""
     grid = Grid(DX, np.zeros(2), np.ones(2))
-    basis = load("solver.basis", name)()
+    basis = load("mpm_verify.solver.basis", name)()
     p = basis.populate(rectangle(grid.lower, grid.upper, DX, 4), LAW.rho0)
     keep = (np.abs(p.X - 0.5) < half * DX).all(axis=1)
     body = Particles(p.X[keep], p.m[keep], p.V0[keep], p.domain[keep])
-    scheme = Scheme(create("solver.transfers", transfer), order)
+    scheme = Scheme(create("mpm_verify.solver.transfers", transfer), order)
     return Model(grid, body, basis, LAW, box(grid, kind), dt, scheme)
 
 
@@ -269,11 +277,13 @@ def strain_energy(p: Particles) -> float:
 def vibrating(transfer: str, order: str, waves: int, dt: float) -> Model:
     """A bar of 16 x 4 cells between rollers; `waves` half waves, A = 0.01 / waves: no particle crosses a cell face."""
     grid = Grid(DX, np.zeros(2), np.array([1.0, 4 * DX]))
-    basis = load("solver.basis", "cpdi")()
+    basis = load("mpm_verify.solver.basis", "cpdi")()
     p = basis.populate(rectangle(grid.lower, grid.upper, DX, 4), LAW.rho0)
     w = waves * np.pi * LAW.wave_speed()
     p.v[:, 0] = 0.01 / waves * w * np.sin(waves * np.pi * p.X[:, 0]) * math.cos(w * dt / 2)
-    return Model(grid, p, basis, LAW, box(grid, "roller"), dt, Scheme(create("solver.transfers", transfer), order))
+    return Model(
+        grid, p, basis, LAW, box(grid, "roller"), dt, Scheme(create("mpm_verify.solver.transfers", transfer), order)
+    )
 
 
 @cache
@@ -340,11 +350,11 @@ def limit(transfer: str) -> float:
 def test_the_stable_step(transfer: str) -> None:
     """Noise of 1e-9 stays 3 % below the limit, and grows without bound 4 % above it."""
     for share in (0.97, 1.04):
-        grid, basis = Grid(DX, np.zeros(2), np.array([1.0, DX])), load("solver.basis", "mpm")()
+        grid, basis = Grid(DX, np.zeros(2), np.array([1.0, DX])), load("mpm_verify.solver.basis", "mpm")()
         p = basis.populate(rectangle(grid.lower, grid.upper, DX, 4), LAW.rho0)
         p.v[:, 0] = 1e-9 * np.repeat(np.random.default_rng(0).standard_normal(len(p) // 2), 2)
         dt = share * limit(transfer) * DX / LAW.wave_speed()
-        m = Model(grid, p, basis, LAW, box(grid, "roller"), dt, Scheme(create("solver.transfers", transfer)))
+        m = Model(grid, p, basis, LAW, box(grid, "roller"), dt, Scheme(create("mpm_verify.solver.transfers", transfer)))
         if share < 1:
             go(m, 400)
             assert np.abs(p.v).max() < 3e-9
@@ -359,7 +369,7 @@ def wave(order: str, steps: int, staggered: bool, name: str = "mpm") -> Floats:
     A = 1e-3: no crossings, so that time is all that is left. A staggered run starts at v0 - dt/2 a0, a0 of the grid.
     """
     c, A = LAW.wave_speed(), 1e-3
-    grid, basis = Grid(1 / 32, np.zeros(2), np.array([1.0, 1 / 32])), load("solver.basis", name)()
+    grid, basis = Grid(1 / 32, np.zeros(2), np.array([1.0, 1 / 32])), load("mpm_verify.solver.basis", name)()
 
     def u(X: Floats) -> Floats:
         return np.stack([A * np.sin(np.pi * X[:, 0]), 0 * X[:, 1]], axis=-1)

@@ -5,9 +5,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cases.objectivity_exact import ramped_column
-from cases.turning_block import OMEGA, RAMP, Block, Box, Gravity, angle_at, execute, setup, spin, turn
-from solver.step import advance
+from mpm_verify.cases.objectivity.exact import ramped_column
+from mpm_verify.cases.objectivity.turning_block import (
+    OMEGA,
+    RAMP,
+    Block,
+    Box,
+    Gravity,
+    angle_at,
+    execute,
+    setup,
+    spin,
+    turn,
+)
+from mpm_verify.solver.step import advance
 
 LIGHT = Block(g=0.0)
 

@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cases.element import Element, State
-from cases.material_checks import excess
-from cases.ubcsand_exact import (
+from mpm_verify.cases.element.checks import excess
+from mpm_verify.cases.element.element import Element, State
+from mpm_verify.cases.element.ubcsand_exact import (
     BIAXIAL,
     CONSTANT_S,
     ETA_AT_TWO_PERCENT,
@@ -22,9 +22,9 @@ from cases.ubcsand_exact import (
     plastic_volume,
     ratio_at,
 )
-from solver.material.ubcsand import MEMORY, Ubcsand, out_of_range
-from solver.plugins import create
-from solver.state import Floats
+from mpm_verify.solver.material.ubcsand import MEMORY, Ubcsand, out_of_range
+from mpm_verify.solver.plugins import create
+from mpm_verify.solver.state import Floats
 
 LAW = Ubcsand()
 ETA, GAMMA, VOLUME, WORK, TURNS, DETACHED = range(6)
@@ -498,7 +498,7 @@ def test_what_is_not_finite_stays_so(bad: float, where: int) -> None:
 )  # fmt: skip
 def test_bad_parameters(text: str) -> None:
     with pytest.raises(ValueError, match="must") as caught:
-        create("solver.material", f"ubcsand:{text}")
+        create("mpm_verify.solver.material", f"ubcsand:{text}")
     assert "\n" not in str(caught.value)
 
 

@@ -6,12 +6,12 @@ from dataclasses import replace
 import fixtures_study as fixtures
 import pytest
 
-from cases.expectations import later_with_9, registered, registry
-from cases.mms_study import SOLUTIONS, Sweep, build, canonical
-from cases.order import Expectation, Outcome, Verdict
-from cases.study import QUANTITIES, Declared, Failure, Result, Run, Study
-from cases.verdicts import Finding, exit_code, findings, refinement
-from solver.plugins import TRANSFERS, available
+from mpm_verify.cases.harness.study import QUANTITIES, Declared, Failure, Result, Run, Study
+from mpm_verify.cases.harness.verdicts import Finding, exit_code, findings, refinement
+from mpm_verify.cases.judging.order import Expectation, Outcome, Verdict
+from mpm_verify.cases.mms.expectations import later_with_9, registered, registry
+from mpm_verify.cases.mms.sweep import SOLUTIONS, Sweep, build, canonical
+from mpm_verify.solver.plugins import TRANSFERS, available
 
 PASS, FAIL, INCONCLUSIVE, ERROR = Outcome
 JUDGED = Declared("cpdi", "axis_aligned", 4, "u", "rms", True, Expectation(2.0))

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from solver.plugins import create
+from mpm_verify.solver.plugins import create
 
 LAWS = ["mohr_coulomb", "drucker_prager", "ubcsand"]
 START = np.array([-2e3, -2e3, -2e3, 0.0])
@@ -31,7 +31,7 @@ OPEN, CLOSE = [(0.0, 2e-3, 0.0)] * 50, [(0.0, -2e-3, 0.0)] * 50
 @pytest.mark.parametrize("name", LAWS)
 def test_stress_returns_where_it_left(name: str) -> None:
     """Pulled apart and pushed together by the same strain: contact is where it parted. Without memory it is at once."""
-    with_, without = (driven(create("solver.material", f"{name}:void={v}"), OPEN + CLOSE) for v in (1, 0))
+    with_, without = (driven(create("mpm_verify.solver.material", f"{name}:void={v}"), OPEN + CLOSE) for v in (1, 0))
     touches = [int(np.argmax(np.abs(sigma[50:]).max(axis=1) > 1.0)) for sigma, _ in (with_, without)]
     assert np.abs(with_[0][49]).max() == 0.0
     assert touches[0] > 40
@@ -42,7 +42,7 @@ def test_stress_returns_where_it_left(name: str) -> None:
 
 @pytest.mark.parametrize("name", LAWS)
 def test_shear_while_open_changes_nothing(name: str) -> None:
-    law = create("solver.material", f"{name}:void=1")
+    law = create("mpm_verify.solver.material", f"{name}:void=1")
     sigma, history = driven(law, [*OPEN, (1e-3, -1e-3, 5e-3), (0.0, 0.0, -0.1), (-5e-3, 0.0, 0.02)])
     assert np.abs(sigma[50:]).max() == 0.0
     void = history[:, column(law, "void")]
@@ -52,7 +52,7 @@ def test_shear_while_open_changes_nothing(name: str) -> None:
 @pytest.mark.parametrize("name", ["mohr_coulomb", "drucker_prager"])
 def test_volume_is_accounted_for(name: str) -> None:
     """Elastic volume, plastic volume and void strain make the volume strain, to round-off, on random paths."""
-    law = create("solver.material", f"{name}:void=1,psi=5")
+    law = create("mpm_verify.solver.material", f"{name}:void=1,psi=5")
     path = np.random.default_rng(1).normal(0, 3e-3, (2000, 3))
     sigma, history = driven(law, path)
     bulk = law.lam + 2 * law.mu / 3
@@ -68,7 +68,7 @@ def test_volume_is_accounted_for(name: str) -> None:
 
 def test_ubcsand_opens_by_what_no_pressure_takes() -> None:
     """Detached from the start, all of the strain is void strain; in compression nothing is."""
-    law = create("solver.material", "ubcsand:void=1")
+    law = create("mpm_verify.solver.material", "ubcsand:void=1")
     _, history = driven(law, [(1e-3, 2e-3, 0.0)] * 10, np.zeros(4))
     np.testing.assert_allclose(history[:, column(law, "void")], 3e-3 * np.arange(1, 11), rtol=1e-9)
     _, history = driven(law, [(-1e-4, -1e-4, 1e-4)] * 10)
@@ -78,13 +78,13 @@ def test_ubcsand_opens_by_what_no_pressure_takes() -> None:
 @pytest.mark.parametrize("name", LAWS)
 def test_off_it_is_not_there(name: str) -> None:
     path = np.random.default_rng(2).normal(0, 3e-3, (300, 3))
-    plain = create("solver.material", name)
+    plain = create("mpm_verify.solver.material", name)
     assert (driven(plain, path)[1][:, column(plain, "void")] == 0).all()
 
 
 @pytest.mark.parametrize("name", LAWS)
 def test_a_lost_strain_is_not_hidden(name: str) -> None:
-    law = create("solver.material", f"{name}:void=1")
+    law = create("mpm_verify.solver.material", f"{name}:void=1")
     for bad in (np.nan, np.inf):
         sigma, history = driven(law, [*OPEN, (0.0, bad, 0.0), (-bad, bad, 0.0)])
         assert not np.isfinite(sigma[-1]).all() or not np.isfinite(history[-1]).all()
@@ -94,4 +94,4 @@ def test_a_lost_strain_is_not_hidden(name: str) -> None:
 @pytest.mark.parametrize(("parameters", "says"), [("void=2", "must be 0 or 1"), ("void=1,c=100", "must have c = 0")])
 def test_refusals(name: str, parameters: str, says: str) -> None:
     with pytest.raises(ValueError, match=says):
-        create("solver.material", f"{name}:{parameters}")
+        create("mpm_verify.solver.material", f"{name}:{parameters}")

@@ -8,8 +8,8 @@ import meshio
 import numpy as np
 import pytest
 
-from cases.store import StoreError
-from reports.vtk import write_series
+from mpm_verify.cases.harness.store import StoreError
+from mpm_verify.reports.export.vtk import write_series
 
 COUNT = 5
 

@@ -24,7 +24,7 @@ def blocks() -> dict[str, str]:
 def verify(folder: Path, *arguments: str) -> Any:
     """What `verify ... --json` of the copy says; an exit code of 3 is that nothing is registered."""
     done = subprocess.run(
-        [sys.executable, "-m", "verify.main", *arguments, "--json"],
+        [sys.executable, "-m", "mpm_verify.verify.main", *arguments, "--json"],
         cwd=folder, env={**os.environ, "PYTHONPATH": str(folder)}, capture_output=True, text=True,
     )  # fmt: skip
     assert done.returncode == 3, done.stderr

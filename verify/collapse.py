@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from verify.options import check_count
-from verify.output import printing
+from mpm_verify.verify.options.common import check_count
+from mpm_verify.verify.terminal.output import printing
 
 if TYPE_CHECKING:
-    from cases.column_exam import Collapse
-    from cases.column_run import ColumnStudy
+    from mpm_verify.cases.column.exam import Collapse
+    from mpm_verify.cases.column.run import ColumnStudy
 
 VERSION = 1
 
@@ -28,12 +28,12 @@ class Wanted:
 
 def conduct(study: "ColumnStudy", folder: Path, jobs: int | None, threads: int, wanted: Wanted) -> int:
     """Returns the exit code; what is wrong with the input or the store is one line and exit code 2."""
-    from verify.conduct import Settings, compute, usage
-    from verify.examine import CODES
-    from verify.junit import check_junit, write_checks
+    from mpm_verify.reports.export.junit import check_junit, write_checks
+    from mpm_verify.verify.conduct import Settings, compute, usage
+    from mpm_verify.verify.examine import CODES
 
     with usage():
-        from cases.store import Store
+        from mpm_verify.cases.harness.store import Store
 
         check_junit(wanted.junit)
         check_count(jobs, "--jobs")
@@ -42,7 +42,7 @@ def conduct(study: "ColumnStudy", folder: Path, jobs: int | None, threads: int, 
         with store.locked():
             store.create(study)
             compute(study, store, Settings(folder, jobs, threads))  # type: ignore[arg-type]
-            from reports.column_page import page
+            from mpm_verify.reports.pages.column import page
 
             collapse, made = page(folder, wanted.vtk)
         if wanted.junit:
@@ -57,7 +57,7 @@ def conduct(study: "ColumnStudy", folder: Path, jobs: int | None, threads: int, 
 
 def document(collapse: "Collapse", made: Path) -> str:
     """One JSON document: runs with their numbers, the paper's sentences, the checks; null for what is not finite."""
-    from verify.examine import finite, told
+    from mpm_verify.verify.examine import finite, told
 
     examination, results = collapse.examination, collapse.results
     runs = []
@@ -87,9 +87,9 @@ def show(collapse: "Collapse", made: Path) -> None:
     from rich.table import Table
     from rich.text import Text
 
-    from reports.column_page import WORDS, numbers
-    from verify.examine import show as checks
-    from verify.table import Listened
+    from mpm_verify.reports.pages.column import WORDS, numbers
+    from mpm_verify.verify.examine import show as checks
+    from mpm_verify.verify.terminal.table import Listened
 
     out = Listened(highlight=False, soft_wrap=False)
     if not out.is_terminal:

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from cases.study import Result, Study
+from mpm_verify.cases.harness.study import Result, Study
 
 if TYPE_CHECKING:
-    from cases.store import Store
+    from mpm_verify.cases.harness.store import Store
 
 SMALL = 4e7  # cost below which worker processes take longer to start than they save
 
@@ -33,8 +33,8 @@ class Settings:
 @contextmanager
 def usage() -> Iterator[None]:
     """What is wrong with the input or the store becomes one line and exit code 2."""
-    from cases.runner import RunnerError
-    from cases.store import StoreError
+    from mpm_verify.cases.harness.runner import RunnerError
+    from mpm_verify.cases.harness.store import StoreError
 
     try:
         yield
@@ -49,15 +49,15 @@ def usage() -> Iterator[None]:
 def conduct(study: Study, settings: Settings) -> int:
     """Run, judge, report; returns the exit code."""
     with usage():
-        from cases.store import Store
-        from cases.verdicts import exit_code
-        from reports.render import render
-        from reports.stored import Record
-        from verify.document import document
-        from verify.junit import check_junit, write_junit
-        from verify.output import printing
-        from verify.overview import show_overview
-        from verify.table import show
+        from mpm_verify.cases.harness.store import Store
+        from mpm_verify.cases.harness.verdicts import exit_code
+        from mpm_verify.reports.export.document import document
+        from mpm_verify.reports.export.junit import check_junit, write_junit
+        from mpm_verify.reports.frames import Record
+        from mpm_verify.reports.pages.mms import render
+        from mpm_verify.verify.terminal.output import printing
+        from mpm_verify.verify.terminal.overview import show_overview
+        from mpm_verify.verify.terminal.table import show
 
         check_junit(settings.junit)
         store = Store(settings.folder)
@@ -81,8 +81,8 @@ def conduct(study: Study, settings: Settings) -> int:
 
 def compute(study: Study, store: "Store", settings: Settings) -> dict[str, Result]:
     """The Results of the study; in this process if there is little to do or one job is asked for."""
-    from cases.runner import InProcess, Ticker, cost, pending, process_pool, run_study
-    from verify.progress import progress
+    from mpm_verify.cases.harness.runner import InProcess, Ticker, cost, pending, process_pool, run_study
+    from mpm_verify.verify.terminal.progress import progress
 
     waiting = pending(study, store)
     jobs = min(settings.jobs or max(1, (os.cpu_count() or 1) // settings.threads), max(1, len(waiting)))
@@ -92,7 +92,7 @@ def compute(study: Study, store: "Store", settings: Settings) -> dict[str, Resul
 
                 def poll() -> None:
                     bar.hear(heard())
-                    import_module("reports.render")  # takes a second, now that the workers are busy
+                    import_module("mpm_verify.reports.pages.mms")  # takes a second, now that the workers are busy
 
                 return run_study(study, store, executor, settings.threads, bar.done, poll)
         Ticker.tell = staticmethod(lambda news: bar.hear([news]))

@@ -11,8 +11,8 @@ from typing import Any
 
 import typer
 
-from cases.checks import Check, Examination
-from verify.output import printing
+from mpm_verify.cases.harness.checks import Check, Examination
+from mpm_verify.verify.terminal.output import printing
 
 CODES = {"PASS": 0, "FAIL": 1, "ERROR": 1, "INCONCLUSIVE": 3}
 VERSION = 1
@@ -26,9 +26,9 @@ def conduct(
     junit: Path | None = None,
 ) -> int:
     """Returns the exit code; what is wrong with the input is one line and exit code 2."""
-    from cases.checks import save
-    from verify.conduct import usage
-    from verify.junit import check_junit, write_checks
+    from mpm_verify.cases.harness.checks import save
+    from mpm_verify.reports.export.junit import check_junit, write_checks
+    from mpm_verify.verify.conduct import usage
 
     with usage():
         check_junit(junit)
@@ -91,7 +91,7 @@ def show(examination: Examination, page: Path) -> None:
     from rich.table import Table
     from rich.text import Text
 
-    from verify.table import STYLES, Listened
+    from mpm_verify.verify.terminal.table import STYLES, Listened
 
     out = Listened(highlight=False, soft_wrap=False)
     if not out.is_terminal:

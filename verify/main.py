@@ -8,17 +8,17 @@ from typing import Annotated
 
 import typer
 
-from verify.audit import audit
-from verify.column import column
-from verify.expectations import expectations
-from verify.graded import graded
-from verify.list import list_plugins
-from verify.material import material
-from verify.methods import methods
-from verify.mms import mms
-from verify.objectivity import objectivity
-from verify.report import report
-from verify.sweep import sweep
+from mpm_verify.verify.commands.audit import audit
+from mpm_verify.verify.commands.column import column
+from mpm_verify.verify.commands.element import material
+from mpm_verify.verify.commands.expectations import expectations
+from mpm_verify.verify.commands.graded import graded
+from mpm_verify.verify.commands.list import list_plugins
+from mpm_verify.verify.commands.methods import methods
+from mpm_verify.verify.commands.mms import mms
+from mpm_verify.verify.commands.objectivity import objectivity
+from mpm_verify.verify.commands.report import report
+from mpm_verify.verify.commands.sweep import sweep
 
 USAGE, STOPPED = 2, 130
 

@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 from typing import Any
 
-from mms.grading import Grading
-from mms.manufacture import Manufactured
-from solver.layout import Layout, Offset
+from mpm_verify.mms.grading import Grading
+from mpm_verify.mms.manufacture import Manufactured
+from mpm_verify.solver.layout import Layout, Offset
 
 
 @dataclass(frozen=True)

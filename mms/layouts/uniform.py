@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import Any
 
-from mms.manufacture import Manufactured
-from solver.layout import Layout, Offset
+from mpm_verify.mms.manufacture import Manufactured
+from mpm_verify.solver.layout import Layout, Offset
 
 
 @dataclass(frozen=True)

@@ -20,8 +20,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from solver.layout import CENTRED, Layout, Offset, rectangle
-from solver.plugins import source
+from mpm_verify.solver.layout import CENTRED, Layout, Offset, rectangle
+from mpm_verify.solver.plugins import source
 
 if TYPE_CHECKING:
     import sympy as sp
@@ -139,9 +139,9 @@ class Own:
     @cached_property
     def edges(self) -> Any:
         """What the boundary does, in a body of the file's own material."""
-        from mms.edges import examine
-        from mms.manufacture import manufacture
-        from solver.plugins import MATERIALS, create
+        from mpm_verify.mms.edges import examine
+        from mpm_verify.mms.manufacture import manufacture
+        from mpm_verify.solver.plugins import MATERIALS, create
 
         law = create(MATERIALS, self.material)
         return examine(self, manufacture(self, law, law.rho0), law)

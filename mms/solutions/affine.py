@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from mms.square import Square
-from solver.state import Floats
+from mpm_verify.mms.square import Square
+from mpm_verify.solver.state import Floats
 
 if TYPE_CHECKING:
     import sympy as sp

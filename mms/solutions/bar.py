@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from math import pi
 from typing import TYPE_CHECKING, ClassVar
 
-from mms.square import Square
+from mpm_verify.mms.square import Square
 
 if TYPE_CHECKING:
     import sympy as sp

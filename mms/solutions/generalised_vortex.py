@@ -20,8 +20,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
-from mms.annulus import Annulus
-from mms.square import Square
+from mpm_verify.mms.annulus import Annulus
+from mpm_verify.mms.square import Square
 
 if TYPE_CHECKING:
     import sympy as sp

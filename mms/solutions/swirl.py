@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from math import cos, sin
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from mms.square import Square
+from mpm_verify.mms.square import Square
 
 if TYPE_CHECKING:
     import sympy as sp

@@ -14,12 +14,12 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from cases.column_claims import Ran
-from cases.column_experiment import Experiment, experiment
-from cases.column_refined import Refined
-from cases.column_run import ColumnRun
-from reports import style
-from solver.state import Floats
+from mpm_verify.cases.column.claims import Ran
+from mpm_verify.cases.column.experiment import Experiment, experiment
+from mpm_verify.cases.column.refined import Refined
+from mpm_verify.cases.column.run import ColumnRun
+from mpm_verify.reports.figures import style
+from mpm_verify.solver.state import Floats
 
 WIDE = 5.4
 SIZE = WIDE, 4.4

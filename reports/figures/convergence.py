@@ -12,12 +12,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
 from matplotlib.ticker import NullLocator
 
-from cases.series import Series
-from reports import style, words
-from reports.stored import Record
+from mpm_verify.cases.harness.series import Series
+from mpm_verify.reports.components import words
+from mpm_verify.reports.figures import style
+from mpm_verify.reports.frames import Record
 
 NORMS = ("rms", "printed")
-EXTRA = {"rms": 0.0, "printed": 1.5}  # orders that the norm adds in 2-D with dt ~ h: cases/norms.py
+EXTRA = {"rms": 0.0, "printed": 1.5}  # orders that the norm adds in 2-D with dt ~ h: cases/mms/norms.py
 TITLES = {"rms": "rms: what verdicts use", "printed": "printed: shown, never judged"}
 
 

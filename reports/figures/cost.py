@@ -13,9 +13,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from cases.study import Run
-from reports import style, words
-from reports.stored import Record
+from mpm_verify.cases.harness.study import Run
+from mpm_verify.reports.components import words
+from mpm_verify.reports.figures import style
+from mpm_verify.reports.frames import Record
 
 ROW, HEAD = 2.3, 0.9  # inches: height of a row of panels, and of legend and axis names
 WIDTH = 8.6

@@ -7,8 +7,8 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from reports import style
-from solver.state import Floats
+from mpm_verify.reports.figures import style
+from mpm_verify.solver.state import Floats
 
 Curve = Mapping[str, Floats]
 SIZE = (4.3, 3.9)

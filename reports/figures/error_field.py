@@ -11,10 +11,11 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 from numpy.typing import NDArray
 
-from cases.store import Arrays
-from cases.study import Run
-from reports import style, words
-from reports.stored import Record
+from mpm_verify.cases.harness.store import Arrays
+from mpm_verify.cases.harness.study import Run
+from mpm_verify.reports.components import words
+from mpm_verify.reports.figures import style
+from mpm_verify.reports.frames import Record
 
 CELLS, PPC = 16, 4  # fine enough to show the field, coarse enough to see each domain
 CORNERS = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])

@@ -4,11 +4,12 @@ from collections.abc import Iterator
 
 from matplotlib.figure import Figure
 
-from cases.graded_study import kind
-from cases.study import Run
-from reports import style, words
-from reports.figures.cost import Line, Row, cost_figure
-from reports.stored import Record
+from mpm_verify.cases.harness.study import Run
+from mpm_verify.cases.mms.graded import kind
+from mpm_verify.reports.components import words
+from mpm_verify.reports.figures import style
+from mpm_verify.reports.figures.cost import Line, Row, cost_figure
+from mpm_verify.reports.frames import Record
 
 
 def found(record: Record) -> bool:

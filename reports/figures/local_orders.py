@@ -8,11 +8,12 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from cases.fit import local_orders
-from cases.series import Series
-from reports import style, words
-from reports.figures.convergence import methods
-from reports.stored import Record
+from mpm_verify.cases.harness.series import Series
+from mpm_verify.cases.judging.fit import local_orders
+from mpm_verify.reports.components import words
+from mpm_verify.reports.figures import style
+from mpm_verify.reports.figures.convergence import methods
+from mpm_verify.reports.frames import Record
 
 
 def orders(record: Record, series: Series, quantity: str, norm: str) -> list[tuple[int, int, float]]:

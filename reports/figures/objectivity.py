@@ -7,9 +7,9 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from cases.checks import Curves
-from reports import style
-from solver.state import Floats
+from mpm_verify.cases.harness.checks import Curves
+from mpm_verify.reports.figures import style
+from mpm_verify.solver.state import Floats
 
 Curve = Mapping[str, Floats]
 LABELS = {"xx": "\N{GREEK SMALL LETTER SIGMA}$_{xx}$", "yy": "\N{GREEK SMALL LETTER SIGMA}$_{yy}$",

@@ -13,10 +13,11 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
-from cases.axes import ParticleAxis, particle_axes
-from reports import style, words
-from reports.figures.convergence import methods
-from reports.stored import Record
+from mpm_verify.cases.harness.axes import ParticleAxis, particle_axes
+from mpm_verify.reports.components import words
+from mpm_verify.reports.figures import style
+from mpm_verify.reports.figures.convergence import methods
+from mpm_verify.reports.frames import Record
 
 SIZE = (4.8, 4.2)
 APART = 0.05  # of the height of the panel: least distance of two labels

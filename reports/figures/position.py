@@ -7,10 +7,11 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from cases.axes import PositionAxis, position_axes
-from reports import style, words
-from reports.figures.convergence import methods
-from reports.stored import Record
+from mpm_verify.cases.harness.axes import PositionAxis, position_axes
+from mpm_verify.reports.components import words
+from mpm_verify.reports.figures import style
+from mpm_verify.reports.figures.convergence import methods
+from mpm_verify.reports.frames import Record
 
 WIDTH = 0.7  # of a cell size that its series share
 

@@ -4,10 +4,11 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
-from cases.axes import TimeAxis, time_axes
-from reports import style, words
-from reports.figures.convergence import methods
-from reports.stored import Record
+from mpm_verify.cases.harness.axes import TimeAxis, time_axes
+from mpm_verify.reports.components import words
+from mpm_verify.reports.figures import style
+from mpm_verify.reports.figures.convergence import methods
+from mpm_verify.reports.frames import Record
 
 ENOUGH = 3  # time steps; two are a number in a table
 

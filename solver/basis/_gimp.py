@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from solver._jit import kernel
-from solver.layout import Layout
-from solver.state import Floats
+from mpm_verify.solver._jit import kernel
+from mpm_verify.solver.layout import Layout
+from mpm_verify.solver.state import Floats
 
 
 @kernel(inline=True)

@@ -1,7 +1,7 @@
 """What the B-spline bases share: how far behind a wall a particle may slip."""
 
-from solver._jit import kernel
-from solver.state import PAD
+from mpm_verify.solver._jit import kernel
+from mpm_verify.solver.state import PAD
 
 
 @kernel(inline=True)

@@ -10,11 +10,11 @@ from typing import ClassVar
 
 import numpy as np
 
-from solver._jit import kernel
-from solver.basis._splines import beyond
-from solver.state import PAD, Floats
-from solver.tensor import four
-from solver.weights import FILL, Basis, outside
+from mpm_verify.solver._jit import kernel
+from mpm_verify.solver.basis._splines import beyond
+from mpm_verify.solver.state import PAD, Floats
+from mpm_verify.solver.tensor import four
+from mpm_verify.solver.weights import FILL, Basis, outside
 
 
 @kernel(inline=True)

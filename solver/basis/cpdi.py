@@ -18,10 +18,10 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from solver._jit import kernel
-from solver.layout import Layout, parallelograms
-from solver.state import Floats
-from solver.weights import FILL, Basis, Place, bilinear, outside
+from mpm_verify.solver._jit import kernel
+from mpm_verify.solver.layout import Layout, parallelograms
+from mpm_verify.solver.state import Floats
+from mpm_verify.solver.weights import FILL, Basis, Place, bilinear, outside
 
 
 @kernel(inline=True)

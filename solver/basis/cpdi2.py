@@ -10,10 +10,10 @@ from typing import ClassVar
 import numpy as np
 from numba import prange
 
-from solver._jit import BLOCK, F1, F2, f8, i8, kernel, nothing
-from solver.layout import Layout
-from solver.state import Floats, Grid, Particles
-from solver.weights import FILL, Basis, Place, bilinear, outside
+from mpm_verify.solver._jit import BLOCK, F1, F2, f8, i8, kernel, nothing
+from mpm_verify.solver.layout import Layout
+from mpm_verify.solver.state import Floats, Grid, Particles
+from mpm_verify.solver.weights import FILL, Basis, Place, bilinear, outside
 
 
 @kernel(FILL)

@@ -9,12 +9,12 @@ from typing import ClassVar
 
 import numpy as np
 
-from solver._jit import kernel
-from solver.basis._gimp import half_lengths, slope, value
-from solver.layout import Layout, parallelograms
-from solver.state import Floats
-from solver.tensor import four
-from solver.weights import FILL, Basis, Place, outside
+from mpm_verify.solver._jit import kernel
+from mpm_verify.solver.basis._gimp import half_lengths, slope, value
+from mpm_verify.solver.layout import Layout, parallelograms
+from mpm_verify.solver.state import Floats
+from mpm_verify.solver.tensor import four
+from mpm_verify.solver.weights import FILL, Basis, Place, outside
 
 
 @kernel(inline=True)

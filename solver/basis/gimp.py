@@ -9,12 +9,12 @@ from typing import ClassVar
 
 import numpy as np
 
-from solver._jit import kernel
-from solver.basis._gimp import half_lengths, slope, value
-from solver.layout import Layout, parallelograms
-from solver.state import Floats
-from solver.tensor import three
-from solver.weights import FILL, Basis, Place, outside
+from mpm_verify.solver._jit import kernel
+from mpm_verify.solver.basis._gimp import half_lengths, slope, value
+from mpm_verify.solver.layout import Layout, parallelograms
+from mpm_verify.solver.state import Floats
+from mpm_verify.solver.tensor import three
+from mpm_verify.solver.weights import FILL, Basis, Place, outside
 
 LARGEST = 0.5 + 1e-9  # half length, in cells: beyond, a domain reaches a fourth node
 

@@ -8,8 +8,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from solver._jit import BLOCK, kernel
-from solver.weights import FILL, Basis, outside
+from mpm_verify.solver._jit import BLOCK, kernel
+from mpm_verify.solver.weights import FILL, Basis, outside
 
 B = BLOCK
 

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solver._jit import kernel
-from solver.elastic import Elastic
-from solver.objective import RESPOND
-from solver.rate_law import RateLaw
-from solver.state import Floats
+from mpm_verify.solver._jit import kernel
+from mpm_verify.solver.elastic import Elastic
+from mpm_verify.solver.objective import RESPOND
+from mpm_verify.solver.rate_law import RateLaw
+from mpm_verify.solver.state import Floats
 
 
 @kernel(RESPOND)

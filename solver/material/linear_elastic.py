@@ -11,9 +11,9 @@ from typing import Any
 
 from numba import prange
 
-from solver._jit import F2, F3, f8, kernel, nothing
-from solver.elastic import Elastic
-from solver.state import Particles
+from mpm_verify.solver._jit import F2, F3, f8, kernel, nothing
+from mpm_verify.solver.elastic import Elastic
+from mpm_verify.solver.state import Particles
 
 
 @kernel(nothing(F3, F2, f8, f8), parallel=True)

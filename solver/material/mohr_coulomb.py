@@ -18,13 +18,13 @@ from typing import ClassVar
 
 import numpy as np
 
-from solver._jit import kernel
-from solver.elastic import Elastic
-from solver.objective import RESPOND
-from solver.principal import advance_elastic, along, in_order, in_place
-from solver.rate_law import RateLaw
-from solver.state import Floats
-from solver.voids import check_void, close_void
+from mpm_verify.solver._jit import kernel
+from mpm_verify.solver.elastic import Elastic
+from mpm_verify.solver.objective import RESPOND
+from mpm_verify.solver.principal import advance_elastic, along, in_order, in_place
+from mpm_verify.solver.rate_law import RateLaw
+from mpm_verify.solver.state import Floats
+from mpm_verify.solver.voids import check_void, close_void
 
 
 @kernel(inline=True)

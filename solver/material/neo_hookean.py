@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from numba import prange
 
-from solver._jit import BLOCK, F1, F2, F3, f8, kernel, nothing
-from solver.elastic import Elastic
-from solver.state import Particles
+from mpm_verify.solver._jit import BLOCK, F1, F2, F3, f8, kernel, nothing
+from mpm_verify.solver.elastic import Elastic
+from mpm_verify.solver.state import Particles
 
 
 @kernel(nothing(F1, F1, f8, f8))

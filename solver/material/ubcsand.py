@@ -27,12 +27,12 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from solver._jit import kernel
-from solver.mobilised import onset, slip, unit
-from solver.objective import RESPOND
-from solver.rate_law import RateLaw
-from solver.state import Floats
-from solver.voids import check_void, close_void
+from mpm_verify.solver._jit import kernel
+from mpm_verify.solver.mobilised import onset, slip, unit
+from mpm_verify.solver.objective import RESPOND
+from mpm_verify.solver.rate_law import RateLaw
+from mpm_verify.solver.state import Floats
+from mpm_verify.solver.voids import check_void, close_void
 
 PASSES = 3
 CLOSE = 0.8  # cosine between the axes of the middle and of the end; beyond it the return is radial

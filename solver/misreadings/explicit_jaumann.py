@@ -5,9 +5,9 @@ First order in time, and the stress grows in a rotation without strain: its devi
 
 from typing import ClassVar
 
-from solver._jit import kernel
-from solver.frames import step_gradient, turned_strain
-from solver.objective import ROTATE, UNROTATE, Rate
+from mpm_verify.solver._jit import kernel
+from mpm_verify.solver.frames import step_gradient, turned_strain
+from mpm_verify.solver.objective import ROTATE, UNROTATE, Rate
 
 
 @kernel(UNROTATE)

@@ -6,9 +6,9 @@ meant. It does not converge. D is treated alike, as the text says.
 
 from typing import ClassVar
 
-from solver._jit import kernel
-from solver.frames import pulled_strain, push_stress
-from solver.objective import ROTATE, UNROTATE, Rate
+from mpm_verify.solver._jit import kernel
+from mpm_verify.solver.frames import pulled_strain, push_stress
+from mpm_verify.solver.objective import ROTATE, UNROTATE, Rate
 
 
 @kernel(UNROTATE)

@@ -5,9 +5,9 @@ The stress is brought to the end of the step and D is left in its middle: first 
 
 from typing import ClassVar
 
-from solver._jit import kernel
-from solver.frames import half_turn, step_gradient, turn_stress, turned_strain
-from solver.objective import ROTATE, UNROTATE, Rate
+from mpm_verify.solver._jit import kernel
+from mpm_verify.solver.frames import half_turn, step_gradient, turn_stress, turned_strain
+from mpm_verify.solver.objective import ROTATE, UNROTATE, Rate
 
 
 @kernel(UNROTATE)

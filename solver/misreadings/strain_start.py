@@ -5,9 +5,9 @@ Only first order in time, and right where the body turns without strain or strai
 
 from typing import ClassVar
 
-from solver._jit import kernel
-from solver.frames import rotation_of, turn_stress, turned_strain
-from solver.objective import ROTATE, UNROTATE, Rate
+from mpm_verify.solver._jit import kernel
+from mpm_verify.solver.frames import rotation_of, turn_stress, turned_strain
+from mpm_verify.solver.objective import ROTATE, UNROTATE, Rate
 
 
 @kernel(UNROTATE)

@@ -7,9 +7,9 @@ material's own, so a law may tell its axes apart. Second order in time, as all r
 
 from typing import ClassVar
 
-from solver._jit import kernel
-from solver.frames import rotation_between, rotation_of, turn_stress, turned_strain
-from solver.objective import ROTATE, UNROTATE, Rate
+from mpm_verify.solver._jit import kernel
+from mpm_verify.solver.frames import rotation_between, rotation_of, turn_stress, turned_strain
+from mpm_verify.solver.objective import ROTATE, UNROTATE, Rate
 
 
 @kernel(UNROTATE)

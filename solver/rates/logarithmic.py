@@ -10,9 +10,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from solver._jit import kernel
-from solver.frames import half_turn, step_gradient, turn_stress, turned_strain
-from solver.objective import ROTATE, UNROTATE, Rate
+from mpm_verify.solver._jit import kernel
+from mpm_verify.solver.frames import half_turn, step_gradient, turn_stress, turned_strain
+from mpm_verify.solver.objective import ROTATE, UNROTATE, Rate
 
 
 @kernel(inline=True)

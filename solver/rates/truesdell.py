@@ -7,9 +7,9 @@ that has left it, elastically, by what the step stretches. So it is here to be c
 
 from typing import ClassVar
 
-from solver._jit import kernel
-from solver.frames import push_stress, turned_strain
-from solver.objective import ROTATE, UNROTATE, Rate
+from mpm_verify.solver._jit import kernel
+from mpm_verify.solver.frames import push_stress, turned_strain
+from mpm_verify.solver.objective import ROTATE, UNROTATE, Rate
 
 
 @kernel(inline=True)

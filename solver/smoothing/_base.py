@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, get_args
 
 import numpy as np
 
-from solver.model import fail
-from solver.rate_law import RateLaw
-from solver.smoothing._project import project, strained, strains
-from solver.state import Floats, Particles
+from mpm_verify.solver.model import fail
+from mpm_verify.solver.rate_law import RateLaw
+from mpm_verify.solver.smoothing._project import project, strained, strains
+from mpm_verify.solver.state import Floats, Particles
 
 if TYPE_CHECKING:
-    from solver.model import Model
+    from mpm_verify.solver.model import Model
 
 Of = Literal["rate", "stress", "both"]
 Where = Literal["cell", "node"]

@@ -9,7 +9,7 @@ Serial loops: one order of sums for any number of threads.
 
 import numpy as np
 
-from solver._jit import F1, F2, F3, f8, flag, i8, kernel, nothing
+from mpm_verify.solver._jit import F1, F2, F3, f8, flag, i8, kernel, nothing
 
 
 @kernel(nothing(F2, F1, F2, F1, f8, i8, i8, flag, F2))

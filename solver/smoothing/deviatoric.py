@@ -6,7 +6,7 @@ The paper's remedy for shear locking: "acts on the deviatoric portion of the str
 from dataclasses import dataclass
 from typing import ClassVar
 
-from solver.smoothing._base import Smoothing
+from mpm_verify.solver.smoothing._base import Smoothing
 
 
 @dataclass(frozen=True)

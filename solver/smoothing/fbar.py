@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solver.smoothing._base import Of, Smoothing, Where
-from solver.state import Floats
+from mpm_verify.solver.smoothing._base import Of, Smoothing, Where
+from mpm_verify.solver.state import Floats
 
 if TYPE_CHECKING:
-    from solver.model import Model
+    from mpm_verify.solver.model import Model
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ cell has no smoothed strain and costs nothing. So the default leaves a tenth, an
 from dataclasses import dataclass
 from typing import ClassVar
 
-from solver.smoothing._base import Smoothing
+from mpm_verify.solver.smoothing._base import Smoothing
 
 
 @dataclass(frozen=True)

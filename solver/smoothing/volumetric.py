@@ -7,7 +7,7 @@ be lowered below what the particle's own deviator needs.
 from dataclasses import dataclass
 from typing import ClassVar
 
-from solver.smoothing._base import Smoothing
+from mpm_verify.solver.smoothing._base import Smoothing
 
 
 @dataclass(frozen=True)

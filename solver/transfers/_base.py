@@ -6,10 +6,10 @@ All of them conserve linear momentum: the shape values of a particle sum to one,
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from solver.state import Floats
+from mpm_verify.solver.state import Floats
 
 if TYPE_CHECKING:
-    from solver.model import Model
+    from mpm_verify.solver.model import Model
 
 Gradient = Callable[[Floats], Floats]
 

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numba import prange
 
-from solver._jit import BLOCK, F1, F2, F3, I1, f8, i8, kernel, nothing
-from solver.boundary import solve
-from solver.state import Floats
-from solver.transfer import CHUNK, B, cells_of, deform, invertible
-from solver.weights import Fill
+from mpm_verify.solver._jit import BLOCK, F1, F2, F3, I1, f8, i8, kernel, nothing
+from mpm_verify.solver.boundary import solve
+from mpm_verify.solver.state import Floats
+from mpm_verify.solver.transfer import CHUNK, B, cells_of, deform, invertible
+from mpm_verify.solver.weights import Fill
 
 if TYPE_CHECKING:
-    from solver.model import Model
+    from mpm_verify.solver.model import Model
 
 
 @kernel(nothing(Fill, i8, i8, i8, i8, F2, F3, F1, F2, F1, F1, f8, i8, i8, F2))

@@ -17,14 +17,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numba import prange
 
-from solver._jit import BLOCK, F1, F2, F3, I1, f8, i8, kernel, nothing
-from solver.state import Floats
-from solver.transfer import CHUNK, B
-from solver.transfers._base import Gradient, Transfer
-from solver.weights import Fill
+from mpm_verify.solver._jit import BLOCK, F1, F2, F3, I1, f8, i8, kernel, nothing
+from mpm_verify.solver.state import Floats
+from mpm_verify.solver.transfer import CHUNK, B
+from mpm_verify.solver.transfers._base import Gradient, Transfer
+from mpm_verify.solver.weights import Fill
 
 if TYPE_CHECKING:
-    from solver.model import Model
+    from mpm_verify.solver.model import Model
 
 LEAST = 1e-12  # of D / h^2
 

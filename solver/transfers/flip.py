@@ -11,7 +11,7 @@ share of each step, so that they grow as dt shrinks.
 
 from dataclasses import dataclass
 
-from solver.transfers._base import Transfer
+from mpm_verify.solver.transfers._base import Transfer
 
 
 @dataclass(frozen=True)

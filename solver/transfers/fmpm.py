@@ -21,12 +21,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solver.state import Floats
-from solver.transfers._base import Transfer
-from solver.transfers._passes import collect, lumped, spread
+from mpm_verify.solver.state import Floats
+from mpm_verify.solver.transfers._base import Transfer
+from mpm_verify.solver.transfers._passes import collect, lumped, spread
 
 if TYPE_CHECKING:
-    from solver.model import Model
+    from mpm_verify.solver.model import Model
 
 HIGHEST = 100  # terms; each takes two passes over the particles
 

@@ -7,7 +7,7 @@ and a given time 1/dt as much; at a fixed Courant number that is of order h, and
 
 from dataclasses import dataclass
 
-from solver.transfers._base import Transfer
+from mpm_verify.solver.transfers._base import Transfer
 
 
 @dataclass(frozen=True)

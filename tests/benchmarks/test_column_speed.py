@@ -6,10 +6,10 @@ from time import perf_counter
 import pytest
 from test_speed import paired, report
 
-from cases.column_run import ColumnRun
-from cases.library.column import gravity, setup
-from solver._jit import use_threads
-from solver.step import Model, advance
+from mpm_verify.cases.column.case import gravity, setup
+from mpm_verify.cases.column.run import ColumnRun
+from mpm_verify.solver._jit import use_threads
+from mpm_verify.solver.step import Model, advance
 
 USUAL = ColumnRun()
 SETTLED = 400  # steps after which it shears and slips

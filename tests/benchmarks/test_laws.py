@@ -15,13 +15,13 @@ import numpy as np
 import pytest
 from test_speed import report
 
-from solver._jit import use_threads
-from solver.plugins import available, create
-from solver.rate_law import RateLaw
-from solver.state import Floats, Particles
+from mpm_verify.solver._jit import use_threads
+from mpm_verify.solver.plugins import available, create
+from mpm_verify.solver.rate_law import RateLaw
+from mpm_verify.solver.state import Floats, Particles
 
 COUNT, ROUNDS = 65_536, 60
-LAWS = available("solver.material")
+LAWS = available("mpm_verify.solver.material")
 
 
 def stresses(rng: np.random.Generator) -> Floats:
@@ -85,7 +85,7 @@ def speed(step: Step, call: Callable[[], None]) -> float:
 def test_stress_updates(benchmark, name: str) -> None:
     """Stress updates a second: of laws in rate form by the kernel alone, and with their objective rate."""
     use_threads(1)
-    step = Step(create("solver.material", name))
+    step = Step(create("mpm_verify.solver.material", name))
     report(benchmark, f"{name}: million updates a second", speed(step, step.update))
     assert np.isfinite(step.p.sigma).all()
     assert not np.array_equal(step.p.sigma, step.sigma)
@@ -106,11 +106,11 @@ def yielding(step: Step) -> float:
     return float((step.p.history != step.history).any(axis=1).mean())
 
 
-@pytest.mark.parametrize("rate", available("solver.rates"))
+@pytest.mark.parametrize("rate", available("mpm_verify.solver.rates"))
 def test_cost_of_a_rate(benchmark, rate: str) -> None:
     """Time of the hypoelastic law with its rate over that of its kernel alone."""
     use_threads(1)
-    step = Step(create("solver.material", f"hypoelastic:E=840e3,rate={rate}"))
+    step = Step(create("mpm_verify.solver.material", f"hypoelastic:E=840e3,rate={rate}"))
     around, alone = speed(step, step.update), speed(step, step.respond)
     assert np.isfinite(step.p.sigma).all()
     benchmark.extra_info["million updates a second"] = around

@@ -14,17 +14,17 @@ import numpy as np
 import pytest
 import yardstick
 
-from cases.library.mms import Comparison, setup
-from cases.study import Run
-from solver._jit import use_threads
-from solver.boundary import MASS_CUTOFF
-from solver.plugins import available
-from solver.state import Particles
-from solver.step import Model, advance
+from mpm_verify.cases.harness.study import Run
+from mpm_verify.cases.mms.case import Comparison, setup
+from mpm_verify.solver._jit import use_threads
+from mpm_verify.solver.boundary import MASS_CUTOFF
+from mpm_verify.solver.plugins import available
+from mpm_verify.solver.state import Particles
+from mpm_verify.solver.step import Model, advance
 
 CELLS, PPC, PAIRS = 128, 4, 60
 STEPS = 10  # of one side before the other's turn, where each has particles of its own: the cache holds one of them
-METHODS = available("solver.basis")
+METHODS = available("mpm_verify.solver.basis")
 
 
 def unloaded(particles: Particles, t: float) -> None:
@@ -122,9 +122,9 @@ def test_cost_of_comparison(benchmark, method: str) -> None:
 def test_memory(benchmark) -> None:
     """Bytes a particle beyond 300 MB, from the peak of a process of its own with 1.3 million particles."""
     code = (
-        "from cases.library.mms import setup, snapshot\n"
-        "from cases.memory import peak_memory\n"
-        "from cases.study import Run\nfrom solver.step import advance\n"
+        "from mpm_verify.cases.mms.case import setup, snapshot\n"
+        "from mpm_verify.cases.harness.memory import peak_memory\n"
+        "from mpm_verify.cases.harness.study import Run\nfrom mpm_verify.solver.step import advance\n"
         "run = Run('cpdi', 'axis_aligned', 'neo_hookean', 380, 9, 0.4)\n"
         "model, comparison, _ = setup(run)\n"
         "for _ in range(3): advance(model, comparison)\n"

@@ -5,7 +5,7 @@ Compiled with the same flags as the solver. This is what the split into fills an
 
 import numpy as np
 
-from solver._jit import F1, F2, F3, f8, i8, kernel, nothing
+from mpm_verify.solver._jit import F1, F2, F3, f8, i8, kernel, nothing
 
 
 @kernel(inline=True)

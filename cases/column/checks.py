@@ -1,0 +1,75 @@
+"""What holds of a column whatever the experiment says, and what a method is known not to hold: checks of a study.
+
+Each invariant is checked for the run that is worst in it. Two are known not to hold the work of their forces: classical
+MPM, whose gradients of weights jump where a particle crosses a cell, and CPDI with domains that may be longer than 0.7
+cells by half a diagonal, whose weights change by much in a step. The work of the stress on the strain that particles
+see is then another than that of the forces at the nodes, by 3 % of the energy there is with domains of a cell, and by
+more than all of it without a limit or with classical MPM. Smoothing of rates or stresses alone, through nodes, or by
+F-bar is not asked either: strain and stress are then not smoothed by one projector. FMPM filters what walls give, and
+its momentum is not counted. All these are told, and not judged. How many runs come to rest, the study declares.
+"""
+
+from collections.abc import Sequence
+from math import sqrt
+
+from mpm_verify.cases.column.claims import Ran, shared
+from mpm_verify.cases.column.run import AT_REST, ColumnRun, ColumnStudy
+from mpm_verify.cases.harness.checks import Check, Way
+
+SHARE = "over the potential energy at first"
+BUDGET, DRIFT, BACK = 0.01, 1e-9, 1e-3
+MASS, STABLE = 1e-12, 0.95
+JUMPS = "mpm"  # method whose weights have gradients that jump
+LONG = 0.7  # cells, half diagonal of a domain
+ADJOINT = ("none", "volumetric", "deviatoric", "full")  # rates and stresses by one projector onto cells
+FILTERS = "fmpm"  # transfer whose walls are not counted
+
+
+def checks(study: ColumnStudy, ran: Sequence[Ran]) -> list[Check]:
+    """Of the runs that came to their end."""
+    smooth = [one for one in ran if holds_work(one.run)]
+    counted = [one for one in ran if name_of(one.run.transfer) != FILTERS]
+    asked: list[tuple[str, Sequence[Ran], list[float], float, str]] = [
+        (f"energy budget, largest residual {SHARE}", ran, [one.values["unbalanced"] for one in ran], BUDGET,
+         "every term is measured apart"),
+        (f"work of the law less that of its forces, {SHARE}", smooth, [one.values["misworked"] for one in smooth],
+         BUDGET, "virtual work"),
+        (f"plastic work, largest fall {SHARE}", smooth, [one.values["plastic_falls"] for one in smooth], BACK,
+         "dissipation"),
+        ("momentum less that given by gravity, walls and damping, over m sqrt(2 g h)", counted,
+         [lost(one) for one in counted], DRIFT, "conservation"),
+        ("mass at the nodes over that of the particles, less 1", ran, [one.values["most_mass_lost"] for one in ran],
+         MASS, "partition of unity"),
+        ("Courant number with the stiffness and speed of the moment", ran, [one.values["most_courant"] for one in ran],
+         STABLE, "a wave crosses a cell in a step or more"),
+    ]  # fmt: skip
+    rested = sum(one.values["on_grid"] <= AT_REST * float(one.curves["potential"][0]) for one in ran)
+    found = [Check("Runs", f"runs of {len(study.runs)} that came to rest", float(rested), float(study.finish),
+                   "at least", "declared by the study")]  # fmt: skip
+    way: Way = "at most"
+    for name, runs, values, bound, source in asked:
+        if runs:
+            place = max(range(len(runs)), key=lambda k: values[k])
+            found.append(Check("Invariants", name + named(study, runs[place].run), values[place], bound, way, source))
+    return found
+
+
+def holds_work(run: ColumnRun) -> bool:
+    """Whether the work of its forces is asked to be that of its stress."""
+    long = name_of(run.method) == "cpdi" and run.limit > LONG
+    return name_of(run.method) != JUMPS and not long and run.smoothing in ADJOINT
+
+
+def name_of(specification: str) -> str:
+    """Without its parameters."""
+    return specification.partition(":")[0]
+
+
+def named(study: ColumnStudy, run: ColumnRun) -> str:
+    """Which run it is, where there are several."""
+    return f" ({shared(run, study.axes)})" if len(study.runs) > 1 and study.axes else ""
+
+
+def lost(one: Ran) -> float:
+    """The momentum that nothing has taken."""
+    return one.values["most_momentum_lost"] / one.values["mass"] / sqrt(2 * one.run.g * one.run.height)

@@ -1,0 +1,234 @@
+"""What is measured of a collapsing column: front, toe and height of the heap, energies, momenta, and what is scaled.
+
+Front: the distance from the wall within which 99 or 99.9 % of the mass lies; single particles fly further. Toe: the
+far end of the heap that hangs together with the wall, in squares of a seventh of the width, by sides or corners.
+Height: below it lie 99 % of the mass of the heap next to the wall, in a strip of a seventh of the width; the profile is
+the same for each strip. A seventh on any grid, so that grids can be compared, unless cells are wider. Crowding: the
+volume V = J V0 that particles keep, over the space in which they are, within the heap. It should be 1; where particles
+drift closer than their det F knows, or apart, it is not, and the heap is smaller, or larger, than its material.
+"""
+
+from math import cos, inf, radians, sin
+from typing import Any
+
+import numpy as np
+from scipy import ndimage
+
+from mpm_verify.cases.column.run import AT_REST, ColumnRun
+from mpm_verify.solver.diagnostics import residual
+from mpm_verify.solver.state import Floats
+from mpm_verify.solver.step import Model
+
+SHARE = 0.99
+SLACK = 1e-6  # of the largest stress: what round-off may pass the strength by
+
+
+class Measure:
+    """Takes a row of numbers and a profile at each look; `run` says which way the heap runs."""
+
+    def __init__(self, run: ColumnRun, model: Model) -> None:
+        self.run, self.end = run, float(model.grid.upper[0])
+        self.strips = round(self.end / run.strip)
+        self.first: dict[str, float] = {}
+        self.rows: list[dict[str, float]] = []
+        self.profiles: list[Floats] = []
+        self.momentum = momentum(model)
+        self.plastic, self.worked = 0.0, worked(model)
+
+    def places(self, model: Model) -> Floats:
+        """Places (P,2) of the particles, x as the distance from the wall; within the grid whatever became of them."""
+        x = np.clip(np.nan_to_num(model.particles.x), 0, model.grid.upper)
+        return np.stack([self.end - x[:, 0], x[:, 1]], axis=1) if self.run.mirror else x
+
+    def look(self, model: Model) -> None:
+        """One row."""
+        p, x = model.particles, self.places(model)
+        heap = connected(x, self.run.strip)
+        profile = surface(x[heap], p.m[heap], self.run.strip, self.strips)
+        assert model.budget
+        terms = model.budget.terms(model)
+        self.first = self.first or terms
+        moved = momentum(model) - self.momentum
+        given = model.budget.impulse + model.budget.gravity * float(p.m.sum()) * model.time
+        row = {
+            "t": model.time,
+            "front_99": quantile(x[:, 0], p.m, 0.99),
+            "front_999": quantile(x[:, 0], p.m, 0.999),
+            "toe": float(x[heap, 0].max()),
+            "height": float(profile[0]),
+            **terms,
+            **self.split(model, terms["work"]),
+            "residual": residual(terms, self.first),
+            "momentum_lost": float(np.abs(moved - given).max()),
+            "mass": float(p.m.sum()),
+            "mass_lost": abs(float(model.grid.mass.sum()) / float(p.m.sum()) - 1) if model.steps else 0.0,
+            "fastest": float(np.hypot(*p.v.T).max()),
+            **strength(model),
+            **scaled(model),
+            "crowding": crowding(x, p.V0 * p.J, self.run.strip),
+        }
+        row["courant"] = model.dt / model.grid.dx * (wave(model.material, row["largest_s"]) + row["fastest"])
+        self.rows.append(row)
+        self.profiles.append(profile)
+
+    def split(self, model: Model, work: float) -> dict[str, float]:
+        """Elastic and plastic share of the work of stress.
+
+        Linear elasticity stores an energy, and the rest is plastic. UBCSAND, whose moduli follow s, has none: there the
+        law gives the plastic work, per volume as it is, and the rest is called elastic.
+        """
+        p, law = model.particles, model.material
+        if hasattr(law, "stored"):
+            elastic = float((p.V0 * p.J * law.stored(p.sigma)).sum())
+            return {"elastic": elastic, "plastic": work - elastic}
+        now = worked(model)
+        volume = p.in_initial_order("V0") * p.in_initial_order("J")
+        self.plastic += float((volume * (now - self.worked)).sum())
+        self.worked = now
+        return {"elastic": work - self.plastic, "plastic": self.plastic}
+
+    def curves(self) -> dict[str, Floats]:
+        """Columns of the rows, and `profile` (T,strips)."""
+        names = self.rows[0] if self.rows else ()
+        columns = {name: np.array([row[name] for row in self.rows]) for name in names}
+        return {**columns, "profile": np.array(self.profiles).reshape(len(self.rows), -1)}
+
+
+def wave(law: Any, s: float) -> float:
+    """Speed of the compression wave; of a law that stiffens with s, under the largest s there is."""
+    return float(law.wave_speed(s) if hasattr(law, "moduli") else law.wave_speed())
+
+
+def momentum(model: Model) -> Floats:
+    """Of all particles (2,)."""
+    total: Floats = (model.particles.m[:, None] * model.particles.v).sum(axis=0)
+    return total
+
+
+def quantile(x: Floats, m: Floats, share: float) -> float:
+    """The place below which this share of the mass lies."""
+    order = np.argsort(x)
+    below = np.cumsum(m[order])
+    return float(x[order[np.searchsorted(below, share * below[-1])]])
+
+
+def connected(x: Floats, side: float) -> Any:
+    """Which particles (P,) are of the heap that reaches the wall, by squares that touch."""
+    cell = np.maximum(np.floor(x / side).astype(int), 0)
+    there = np.zeros(cell.max(axis=0) + 1, dtype=bool)
+    there[cell[:, 0], cell[:, 1]] = True
+    labels, _ = ndimage.label(there, np.ones((3, 3)))
+    number = labels[cell[:, 0], cell[:, 1]]
+    at_wall = number[cell[:, 0] == cell[:, 0].min()]
+    return number == np.bincount(at_wall).argmax()
+
+
+def surface(x: Floats, m: Floats, strip: float, strips: int) -> Floats:
+    """Height (strips,) below which SHARE of the mass of each strip lies; zero where there is none."""
+    number, heights = np.clip((x[:, 0] / strip).astype(int), 0, strips - 1), np.zeros(strips)
+    order = np.argsort(number, kind="stable")
+    bounds = np.searchsorted(number[order], np.arange(strips + 1))
+    for k in range(strips):
+        rows = order[bounds[k] : bounds[k + 1]]
+        if len(rows):
+            heights[k] = quantile(x[rows, 1], m[rows], SHARE)
+    return heights
+
+
+def worked(model: Model) -> Floats:
+    """Plastic work per volume of each particle (P,), in the initial order, of a law that counts it."""
+    memory: Any = getattr(model.material, "memory", ())
+    if "work_p" not in memory:
+        return np.zeros(len(model.particles))
+    found: Floats = model.particles.in_initial_order("history")[:, memory.index("work_p")]
+    return found
+
+
+def crowding(x: Floats, V: Floats, side: float) -> float:
+    """Volume over space, in squares that have particles and such a square above them; NaN where there are none."""
+    cell = np.maximum(np.floor(x / side + 1e-9).astype(int), 0)
+    volume = np.zeros((cell[:, 0].max() + 1, cell[:, 1].max() + 2))
+    np.add.at(volume, (cell[:, 0], cell[:, 1]), V)
+    within = (volume[:, :-1] > 0) & (volume[:, 1:] > 0)
+    return float(volume[:, :-1][within].mean() / side**2) if within.any() else float("nan")
+
+
+def strength(model: Model) -> dict[str, float]:
+    """Share of the volume whose stress, as the forces have it, is outside the strength in the plane, and by how much.
+
+    `beyond`: the largest t/(s sin phi + c cos phi) - 1 of particles with more than 1 % of the largest s. Of laws that
+    yield by t and s alone; zero of others. `idle`: the share without stress. `largest_s`: the largest s.
+    """
+    p, law = model.particles, model.material
+    sigma = p.felt if p.felt.size else p.sigma
+    s, t = -(sigma[:, 0] + sigma[:, 1]) / 2, np.hypot((sigma[:, 0] - sigma[:, 1]) / 2, sigma[:, 3])
+    found = {
+        "largest_s": float(s.max()),
+        "idle": float((p.sigma == 0).all(axis=1).mean()),
+        "outside": 0.0,
+        "beyond": 0.0,
+    }
+    phi = radians(getattr(law, "phi_f", getattr(law, "phi", 0.0)))
+    if not phi or hasattr(law, "cone"):
+        return found
+    strong = sin(phi) * s + law.c * cos(phi)  # type: ignore[attr-defined]
+    pressed = s > 0.01 * max(float(s.max()), 1e-300)
+    ratio = t[pressed] / strong[pressed] - 1
+    outside = float((t > strong + SLACK * float(np.abs(sigma).max())).mean())
+    return found | {"outside": outside, "beyond": float(max(0.0, ratio.max(initial=0.0)))}
+
+
+def scaled(model: Model) -> dict[str, float]:
+    """Shares of particles with a cut domain and with void strain, the volume of void per solid, the extremes of J."""
+    p, law = model.particles, model.material
+    basis: Any = model.basis
+    cut = float(basis.cut(p.F, p.domain, model.grid.dx).mean()) if hasattr(basis, "cut") else 0.0
+    memory: Any = getattr(law, "memory", ())
+    void = p.history[:, memory.index("void")] if "void" in memory else np.zeros(1)
+    J = p.J
+    return {
+        "cut": cut,
+        "void": float((void > 0).mean()),
+        "void_strain": float(void.mean()),
+        "least_J": float(J.min()),
+        "largest_J": float(J.max()),
+    }
+
+
+def final(run: ColumnRun, curves: dict[str, Floats]) -> dict[str, float]:
+    """Numbers of a run: those at its end, the largest of some, and when it came to rest.
+
+    `rest`: since when the kinetic energy of the grid is below AT_REST of the potential energy; inf if it is not.
+    `area`: under the final profile, over that of the column: 1 and what it has dilated, or less where it has shrunk.
+    Shares of the potential energy there was, largest at any time: `unbalanced`, of the budget; `misworked`, between the
+    work of the law and that of the forces; `lost` by the method; `plastic_falls`, that plastic work gave back.
+    `creep`: how much the height still changed in the last fifth of the time, as a share of it.
+    """
+    values = {name: float(column[-1]) for name, column in curves.items() if name != "profile"}
+    for name in (
+        "outside",
+        "beyond",
+        "largest_s",
+        "cut",
+        "void",
+        "fastest",
+        "momentum_lost",
+        "largest_J",
+        "courant",
+        "mass_lost",
+    ):
+        values[f"most_{name}"] = float(curves[name].max())
+    first = float(curves["potential"][0])
+    moving = np.flatnonzero(curves["on_grid"] > AT_REST * first)
+    last = int(moving[-1]) if len(moving) else 0
+    t, height = curves["t"], curves["height"]
+    values["rest"] = float(t[last + 1]) if last + 1 < len(t) else inf
+    values["creep"] = float(height[t >= 0.8 * t[-1]][0] - height[-1]) / max(float(height[-1]), 1e-300)
+    plastic = curves["plastic"]
+    values["unbalanced"] = float(np.abs(curves["residual"]).max()) / first
+    values["misworked"] = float(np.abs(curves["convection"]).max()) / first
+    values["lost"] = float(np.abs(curves["transfer"] + curves["convection"]).max()) / first
+    values["plastic_falls"] = float((np.maximum.accumulate(plastic) - plastic).max()) / first
+    values["run_out"] = values["front_99"] / run.width - 1
+    values["area"] = float(curves["profile"][-1].sum()) * run.strip / (run.width * run.height)
+    return values

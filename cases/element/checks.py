@@ -1,0 +1,215 @@
+"""What is known of each law beyond curves: tables, limits and invariants, with what they are held against."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from math import cos, radians, sin, tan
+from typing import Any
+
+import numpy as np
+
+from mpm_verify.cases.element import ubcsand_exact as ubc
+from mpm_verify.cases.element.curves import columns
+from mpm_verify.cases.element.element import Element
+from mpm_verify.cases.element.paths import TESTS, Followed, follow
+from mpm_verify.cases.harness.checks import Check
+from mpm_verify.solver.material.drucker_prager import DruckerPrager
+from mpm_verify.solver.material.hypoelastic import Hypoelastic
+from mpm_verify.solver.material.mohr_coulomb import MohrCoulomb, slope
+from mpm_verify.solver.material.ubcsand import MEMORY, Ubcsand
+from mpm_verify.solver.state import Floats
+
+TABLE, FORM = "reference table", "closed form"
+RETURNS = (  # trial stress -> stress: E = 840, nu = 0.3, phi = 31, psi = 1, c = 0, in any unit
+    ((-1.0, -3.0, -9.0), (-2.45429513, -3.03647977, -7.66730412), "plane"),
+    ((-1.0, -1.2, -9.0), (-2.23265637, -2.23265637, -6.97489685), "edge of the first two"),
+    ((-1.0, -8.0, -9.0), (-2.50600495, -7.82884742, -7.82884742), "edge of the last two"),
+    ((-0.2, -2.0, -9.0), (-2.23265637, -2.23265637, -6.97489685), "edge of the first two, outside"),
+    ((1.0, 0.5, -0.2), (0.0, 0.0, 0.0), "apex"),
+)
+
+
+def law_checks(law: Any) -> list[Check]:
+    """Those of the law's kind; none for a law that nothing is known of."""
+    kinds: list[tuple[type, Callable[[Any], list[Check]]]] = [
+        (Hypoelastic, elastic), (MohrCoulomb, mohr_coulomb), (DruckerPrager, drucker_prager), (Ubcsand, ubcsand),
+    ]  # fmt: skip
+    return next((check(law) for kind, check in kinds if isinstance(law, kind)), [])
+
+
+def run(law: Any, name: str, length: float, stress: float, steps: int = 100) -> Followed:
+    """An element test of another length, from an isotropic stress, compression positive."""
+    test = replace(TESTS[name], length=length, loose=1.0)
+    return follow(Element(law), test, steps, np.array([-stress, -stress, -stress, 0.0]))
+
+
+def elastic(law: Hypoelastic) -> list[Check]:
+    """Uniaxial strain: M ln(stretch) and K0, from nothing."""
+    M, K0 = law.lam + 2 * law.mu, law.nu / (1 - law.nu)
+    end = run(law, "oedometric", 0.1, 0.0).sigma[-1]
+    group = "Linear elasticity"
+    return [
+        Check(group, "vertical stress over M at a strain of -0.1", end[1] / M, -0.1, "relative", FORM, 1e-12),
+        Check(group, "K0", end[0] / end[1], K0, "absolute", FORM, 1e-12),
+    ]  # fmt: skip
+
+
+def davis_ratio(law: Any) -> float | None:
+    """Shear over vertical stress of simple shear at failure (Davis 1968); None of a law that it does not hold for."""
+    matched = isinstance(law, MohrCoulomb) or (isinstance(law, DruckerPrager) and law.cone == "plane_strain")
+    if not matched or law.c:
+        return None
+    sf, sp = sin(radians(law.phi)), sin(radians(law.psi))
+    return float(sf * cos(radians(law.psi)) / (1 - sf * sp))
+
+
+def davis(law: Any) -> list[Check]:
+    """Simple shear at constant vertical stress at failure: stress ratio, and dilation; none where there is no ratio."""
+    ratio = davis_ratio(law)
+    if ratio is None:
+        return []
+    stress = 1e-6 * law.E  # far below the stiffness: then the last bit of elastic strain is gone soon
+    found = run(law, "shear_stress", 0.1, stress, 400)
+    before, after = columns(TESTS["shear_stress"], replace(found)), found.strain
+    grown = (after[-1, 1] - after[-40, 1]) / (2 * (after[-1, 2] - after[-40, 2]))
+    group = "Simple shear at failure"
+    return [
+        Check(group, "shear over vertical stress", before["tau"][-1] / stress, ratio, "absolute", "Davis (1968)", 1e-6),
+        Check(group, "dilation, vertical strain over shear", grown, tan(radians(law.psi)), "absolute", "tan psi", 1e-6),
+    ]
+
+
+def mohr_coulomb(law: MohrCoulomb) -> list[Check]:
+    """Returns of the table where the angles are its own, Davis' ratio, biaxial compression on both sides of yield."""
+    found = returns(law) if (law.phi, law.psi, law.nu, law.c, law.sigma_t) == (31, 1, 0.3, 0, 0) else []
+    stress, k, m = 5e3, slope(law.phi), slope(law.psi)
+    strong = k * stress + 2 * law.c * np.sqrt(k)
+    yields = (strong - stress) * (1 - law.nu**2) / law.E
+    end = run(law, "biaxial", 4 * yields, stress)
+    rate = (end.strain[-1] - end.strain[-20])[:2]
+    group, K0 = "Biaxial compression and K0", law.nu / (1 - law.nu)
+    just = run(law, "biaxial", yields * (1 - 1e-6), stress).history[-1, 0]
+    found += [
+        Check(group, "vertical stress at failure", -end.sigma[-1, 1], strong, "relative", FORM, 1e-10),
+        Check(group, "plastic shear strain just before the yield strain", just, 0.0, "absolute", FORM, 1e-12),
+        Check(group, "lateral over vertical strain at failure", rate[0] / rate[1], -m, "relative", FORM, 1e-9),
+    ]  # fmt: skip
+    if K0 * k > 1:
+        slid = run(law, "oedometric", 0.01, 1.0).history[-1, 0]
+        found.append(Check(group, "plastic strain of an elastic K0 state", slid, 0.0, "absolute", "K0 k > 1", 0.0))
+    return found + davis(law)
+
+
+def returns(law: MohrCoulomb) -> list[Check]:
+    """One stress outside each region's surface, zz in each of its places; de = 0 leaves the return alone."""
+    checks, none = [], np.zeros(3)
+    for trial, exact, region in RETURNS:
+        worst = 0.0
+        for order in ((0, 1, 2), (1, 2, 0), (0, 2, 1)):  # which of the three stand in xx, yy, zz
+            sigma = np.array([*(trial[i] for i in order), 0.0])
+            law.respond(law.constants(), sigma, none.copy(), np.zeros(len(law.memory)))
+            worst = float(np.max([worst, *(abs(sigma[place] - exact[i]) for place, i in enumerate(order))]))
+        checks.append(Check("Returns", f"{region}: largest miss, zz in any place", worst, 0.0, "absolute", TABLE, 1e-8))
+    return checks
+
+
+def drucker_prager(law: DruckerPrager) -> list[Check]:
+    """The cone matched in plane strain fails as Mohr-Coulomb does, once the strain has settled."""
+    return davis(law)
+
+
+def ubcsand(law: Ubcsand) -> list[Check]:
+    """Tables where the parameters are those of Table 2, else the closed forms; failure, work, bounds."""
+    if law.c or not law.Rf:
+        return []
+    return [*constant_s(law), *biaxial(law), *oedometric(law), *invariants(law)]
+
+
+def constant_s(law: Ubcsand) -> list[Check]:
+    """Ratio, plastic shear and plastic volume after the tabulated strain, 100 steps."""
+    checks, usual, group = [], law == Ubcsand(), "Shear at constant s"
+    for s, ratio, gamma, volume, _ in ubc.CONSTANT_S:
+        eta = ratio or law.eta_f
+        if eta > law.eta_f:
+            continue
+        slip, shrunk = ubc.plastic_shear(law, s, eta), ubc.plastic_volume(law, s, eta)
+        end = run(law, "constant_s", slip + ubc.elastic_shear(law, s, eta), s).history[-1]
+        at = f"s = {s / 1e3:g} kPa, eta = {eta:.3g}"
+        wanted = (eta, gamma, volume) if usual else (eta, slip, shrunk)
+        for what, found, expected in zip(("eta", "plastic shear", "contraction"), (end[0], end[1], -end[2]), wanted,
+                                         strict=True):  # fmt: skip
+            within = 1e-6 if usual else 1e-3 * expected  # other numbers may take much longer strains
+            checks.append(
+                Check(group, f"{what} at {at}", found, expected, "absolute", TABLE if usual else FORM, within)
+            )
+    reached = run(law, "constant_s", 0.02, 5e3).history[-1, 0]
+    known = ubc.ETA_AT_TWO_PERCENT if usual else ubc.ratio_at(law, 5e3, 0.02)
+    return [*checks, Check(group, "eta at 5 kPa and a shear of 2 %", reached, known, "absolute", FORM, 1e-6)]
+
+
+def biaxial(law: Ubcsand) -> list[Check]:
+    """Ratio and lateral strain at the tabulated vertical strain, the peak and the flow there."""
+    checks, usual, group = [], law == Ubcsand(), "Drained biaxial compression at 5 kPa"
+    for eta, _, gamma, volume, *_ in ubc.BIAXIAL:
+        if eta >= law.eta_f:
+            continue
+        shear, shrunk = (gamma, volume) if usual else ubc.biaxial(law, 5e3, eta)
+        end = run(law, "biaxial", (shrunk + shear) / 2, 5e3)
+        source = TABLE if usual else "quadrature"
+        checks.append(
+            Check(group, f"eta at the strain of eta = {eta}", end.history[-1, 0], eta, "absolute", source, 1e-6)
+        )
+        lateral = -end.strain[-1, 0]
+        checks.append(
+            Check(group, f"lateral strain there ({eta})", lateral, (shrunk - shear) / 2, "absolute", source, 1e-6)
+        )
+    end = run(law, "biaxial", 4 * (ubc.plastic_shear(law, 5e3, law.eta_f) + 0.01), 5e3, 800)
+    peak = end.sigma[-1, 1] / end.sigma[-1, 0]
+    gone = end.history[-1] - end.history[-10]
+    f = law.eta_f
+    return [
+        *checks,
+        Check(group, "stress ratio at failure", peak, (1 + f) / (1 - f), "relative", "(1 + eta_f)/(1 - eta_f)", 1e-9),
+        Check(group, "dilation at failure", gone[2] / gone[1], f - law.eta_cv, "absolute", "eta_f - eta_cv", 1e-9),
+    ]  # fmt: skip
+
+
+def oedometric(law: Ubcsand) -> list[Check]:
+    """K0, ratio and strain from a nearly stress-free state, for Table 2 alone: there is no closed form."""
+    if law != Ubcsand():
+        return []
+    found = run(law, "oedometric", 0.009, 50.0, 2000)
+    vertical, checks = -found.sigma[:, 1], []
+    for stress, K0, eta, strain in ubc.OEDOMETRIC:
+        for what, values, expected, within in (
+            ("K0", found.sigma[:, 0] / found.sigma[:, 1], K0, 1e-3), ("eta", found.history[:, 0], eta, 1e-3),
+            ("strain", -found.strain[:, 1], strain, 1e-5),
+        ):  # fmt: skip
+            at = float(np.interp(stress, vertical, values))
+            checks.append(Check("Oedometric loading from 50 Pa", f"{what} at {stress / 1e3:g} kPa", at, expected,
+                                "absolute", "table to three digits", within))  # fmt: skip
+    return checks
+
+
+def invariants(law: Ubcsand) -> list[Check]:
+    """Of random strains: the strength is never passed, plastic work never falls; and the work's closed form."""
+    group, element = "Invariants", Element(law)
+    worked, rng = MEMORY.index("work_p"), np.random.default_rng(1)  # a walk that spends most of its steps at failure
+    state = element.start(np.array([-5e3, -5e3, -5e3, 0.0]))
+    over, fall = -np.inf, -np.inf
+    for move in rng.normal(0, 2e-4, (2000, 3)) - (2e-5, 2e-5, 0):
+        before, state = state, element.step(state, move[None])[0]
+        over = float(np.maximum(over, excess(law, state.sigma)))  # max() would lose a NaN
+        fall = float(np.maximum(fall, before.history[worked] - state.history[worked]))
+    end = run(law, "constant_s", 0.06, 5e3).history[-1]
+    work = end[worked] / (5e3 * law.eta_cv * end[MEMORY.index("gamma_p")])
+    return [
+        Check(group, "largest t - s sin(phi_f) over s, 2000 random steps", over, 1e-12, "at most", "strength"),
+        Check(group, "largest fall of the plastic work", fall, 0.0, "at most", "dissipation"),
+        Check(group, "plastic work over s sin(phi_pt) gamma_p", work, 1.0, "absolute", "Taylor's work equation", 1e-5),
+    ]
+
+
+def excess(law: Ubcsand, sigma: Floats) -> float:
+    """By how much a stress passes the strength, over s."""
+    s = -(sigma[0] + sigma[1]) / 2
+    return -np.inf if s <= 0 else float((np.hypot((sigma[0] - sigma[1]) / 2, sigma[3]) - law.eta_f * s) / s)

@@ -1,0 +1,70 @@
+"""The curves of the element tests that are kept to be drawn, and the lines and points that are drawn beside them."""
+
+from math import cos, radians, sin
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mpm_verify.cases.element import ubcsand_exact as ubc
+from mpm_verify.cases.element.checks import davis_ratio
+from mpm_verify.cases.harness.checks import Curves
+from mpm_verify.solver.material.mohr_coulomb import MohrCoulomb
+from mpm_verify.solver.material.ubcsand import Ubcsand
+
+if TYPE_CHECKING:
+    from mpm_verify.cases.element.exam import Studied
+
+MARKED = 5e3  # Pa, the confining stress of the reference tables
+DRAWN = 400  # points of a curve that are kept
+
+
+def drawn(law: Any, studies: "list[Studied]", stress: float) -> Curves:
+    """Everything that the page draws."""
+    return curves(studies) | strength(law) | limit(law, stress) | marks(law, studies, stress)
+
+
+def curves(studies: "list[Studied]") -> Curves:
+    """`test/NAME` and `exact/NAME` columns, `errors/NAME`: steps, error; `kind/NAME`: what its axes are."""
+    kept: Curves = {}
+    for one in studies:
+        every = max(1, len(one.curve["s"]) // DRAWN)
+        kept[f"test/{one.test.name}"] = {name: values[::every] for name, values in one.curve.items()}
+        if one.truth is not None:
+            kept[f"exact/{one.test.name}"] = one.truth
+        errors = {"steps": np.array(one.steps, float), "error": np.array(one.errors)}
+        kept[f"errors/{one.test.name}"] = errors | {"order": np.array([one.order])}
+        kept[f"kind/{one.test.name}"] = {"shear": np.array([float(one.test.shear)])}
+    return kept
+
+
+def strength(law: Any) -> Curves:
+    """The line t = a + b s that a soil cannot pass in the plane, where the law has one."""
+    if isinstance(law, Ubcsand):
+        return {"strength": {"a": np.array([law.shift * law.eta_f]), "b": np.array([law.eta_f])}}
+    if isinstance(law, MohrCoulomb):
+        b = sin(radians(law.phi))
+        return {"strength": {"a": np.array([law.c * cos(radians(law.phi))]), "b": np.array([b])}}
+    return {}
+
+
+def limit(law: Any, stress: float) -> Curves:
+    """The shear stress that simple shear at constant vertical stress comes to, where it is known."""
+    ratio = davis_ratio(law)
+    return {} if ratio is None else {"limit/shear_stress": {"tau": np.array([ratio * stress])}}
+
+
+def marks(law: Any, studies: "list[Studied]", stress: float) -> Curves:
+    """Points of the reference tables on the curves of the law that they are for."""
+    if law != Ubcsand() or stress != MARKED:
+        return {}
+    table = [
+        (slip + ubc.elastic_shear(law, s, eta), eta * s, ev)
+        for s, eta, slip, ev, _ in ubc.CONSTANT_S
+        if s == MARKED and eta
+    ]
+    found = {"constant_s": table, "biaxial": [(g, (s1 - MARKED) / 2, ev) for _, s1, g, ev, *_ in ubc.BIAXIAL]}
+    return {
+        f"marks/{name}": dict(zip(("gamma", "t", "ev"), np.array(rows).T, strict=True))
+        for name, rows in found.items()
+        if name in {one.test.name for one in studies}
+    }

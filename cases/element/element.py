@@ -1,0 +1,117 @@
+"""One element of a law without a grid: strains or stresses are given, the rest is found, step by step.
+
+The law works in its own frame, so no rotation is involved. Strains are logarithmic, tensor components xx, yy, xy,
+tension positive, zz = 0 (plane strain). A law in rate form is asked by its kernel; a law of F by F = exp(strain).
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from mpm_verify.solver.rate_law import RateLaw
+from mpm_verify.solver.state import Floats, Particles
+
+TOLERANCE, ENOUGH = 1e-13, 1e-12  # of the residuals' scales: where Newton ends, and what round-off may leave
+ATTEMPTS, NUDGE = 60, 1e-7
+
+
+class ElementFailed(Exception):  # noqa: N818 - what cannot go on is a result
+    """The step cannot be solved; the message says why."""
+
+
+@dataclass(frozen=True)
+class State:
+    """strain (3,): xx, yy, xy; sigma (4,): xx, yy, zz, xy; history (H,)."""
+
+    strain: Floats
+    sigma: Floats
+    history: Floats
+
+
+# Residuals (3,) of a step, zero where it is as asked: of the strain increment (3,) and of the state at its end.
+Control = Callable[[Floats, State], Floats]
+
+
+@dataclass(frozen=True)
+class Element:
+    """A law, as a function of states."""
+
+    law: Any
+
+    @cached_property
+    def constants(self) -> Floats:
+        """What the kernel of a law in rate form reads."""
+        constants: Floats = self.law.constants()
+        return constants
+
+    def start(self, sigma: Floats) -> State:
+        """The state under the stress sigma (4,); a law of F starts undeformed whatever it is."""
+        if isinstance(self.law, RateLaw):
+            return State(np.zeros(3), sigma.copy(), self.law.initial(sigma[None])[0])
+        return State(np.zeros(3), np.zeros(4), np.zeros(0))
+
+    def step(self, state: State, increments: Floats) -> list[State]:
+        """The states after each of the strain increments (n,3), all from the same state."""
+        count = len(increments)
+        strains = state.strain + increments
+        if isinstance(self.law, RateLaw):
+            sigma, history = np.tile(state.sigma, count), np.tile(state.history, count)
+            self.law.respond(self.constants, sigma, np.ascontiguousarray(increments).ravel(), history)
+            rows, memories = sigma.reshape(count, 4), history.reshape(count, -1)
+        else:
+            p = Particles(np.zeros((count, 2)), np.ones(count), np.ones(count), np.zeros((count, 0)))
+            p.F = np.ascontiguousarray(stretch(strains))
+            self.law.update(p, 1.0)
+            rows, memories = p.sigma, np.zeros((count, 0))
+        return [State(*parts) for parts in zip(strains, rows, memories, strict=True)]
+
+    def solve(self, state: State, control: Control, guess: Floats, scale: Floats) -> State:
+        """The state after one step under a control; `scale` (3,) is the size of its residuals. Raises ElementFailed.
+
+        Newton with a tangent by differences, and half the step where that does not bring the residual down: a corner
+        of a yield surface has a tangent on either side. It ends at round-off: where no shorter step is better.
+        """
+        nudge = NUDGE * max(1e-6, float(np.abs(guess).max()))
+        x, best = guess.copy(), np.inf
+        for _ in range(ATTEMPTS):
+            moves = x + nudge * np.vstack([np.zeros(3), np.eye(3)])
+            ends = self.step(state, moves)
+            residuals = np.array([control(move, end) / scale for move, end in zip(moves, ends, strict=True)])
+            best = float(np.abs(residuals[0]).max())
+            if not np.isfinite(residuals).all():
+                raise ElementFailed("a stress that is not finite")
+            if best < TOLERANCE:
+                return ends[0]
+            # Least squares: perfect plasticity may leave a tangent without an inverse on the way.
+            newton = np.linalg.lstsq((residuals[1:] - residuals[0]).T / nudge, -residuals[0], rcond=1e-13)[0]
+            better = self._shorten(state, control, x, newton, scale, best)
+            if better is None:
+                break
+            x = better
+        if best < ENOUGH:
+            return self.step(state, x[None])[0]
+        raise ElementFailed(f"no strain leads there: {best:.1e} of the stress is left")
+
+    def _shorten(
+        self, state: State, control: Control, x: Floats, move: Floats, scale: Floats, best: float
+    ) -> Floats | None:
+        """x after the longest of the halved moves that lessens the residual; None where none does."""
+        for halvings in (range(1), range(1, 12)):  # the whole move is mostly right
+            tried = x + move * 0.5 ** np.array(halvings)[:, None]
+            for candidate, end in zip(tried, self.step(state, tried), strict=True):
+                if float(np.abs(control(candidate, end) / scale).max()) < best:
+                    return np.asarray(candidate)
+        return None
+
+
+def stretch(strain: Floats) -> Floats:
+    """exp of strains xx, yy, xy (...,3) as (...,2,2): e^m (cosh r I + sinh r / r dev), m and r centre and radius."""
+    m, half, xy = (strain[..., 0] + strain[..., 1]) / 2, (strain[..., 0] - strain[..., 1]) / 2, strain[..., 2]
+    r = np.hypot(half, xy)
+    even, odd = np.exp(m) * np.cosh(r), np.exp(m) * np.sinc(1j * r / np.pi).real
+    rows = [[even + odd * half, odd * xy], [odd * xy, even - odd * half]]
+    stretched: Floats = np.moveaxis(np.array(rows), (0, 1), (-2, -1))
+    return stretched

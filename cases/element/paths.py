@@ -1,0 +1,189 @@
+"""The element tests as data: of each three conditions on strains and stresses, and how far it goes.
+
+A strain condition gives the increment of a combination of xx, yy, xy (tensor), a stress condition holds one where it
+was. Compression is along y. A strain path of one's own
+comes from a CSV file (element_csv.py).
+"""
+
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from mpm_verify.cases.element.element import Element, ElementFailed, State
+from mpm_verify.solver.state import Floats
+
+CYCLES = 3
+
+
+@dataclass(frozen=True)
+class Condition:
+    """A combination with `weights` of xx, yy, xy: of the strain, which goes through `share` of the path's length; or of
+    the stress, which stays."""
+
+    of: Literal["strain", "stress"]
+    weights: tuple[float, float, float]
+    share: float = 0.0
+
+
+XX, YY, XY = (Condition("strain", w) for w in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)))
+
+
+def given(weights: tuple[float, float, float], share: float) -> Condition:
+    """A strain that is given."""
+    return Condition("strain", weights, share)
+
+
+def held(*weights: float) -> Condition:
+    """A stress that is held."""
+    return Condition("stress", (weights[0], weights[1], weights[2]))
+
+
+@dataclass(frozen=True)
+class ElementTest:
+    """`length` of the path in strain; `shear`: its curves are of xy; `closed`: the volume in the plane is kept;
+    `cyclic`: to either side CYCLES times and back to the middle; `loose`: it starts at this share of the stress."""
+
+    name: str
+    title: str
+    conditions: tuple[Condition, Condition, Condition]
+    length: float
+    shear: bool = False
+    closed: bool = False
+    cyclic: bool = False
+    loose: float = 1.0
+    points: Floats = field(default_factory=lambda: np.zeros((0, 3)), compare=False)  # of a path from a file
+
+    @property
+    def legs(self) -> int:
+        """Straight pieces: a number of steps is a multiple of it, so that no step goes around a corner."""
+        return max(1, len(self.points) - 1, 4 * CYCLES * self.cyclic)
+
+    def steps(self, least: int) -> int:
+        """The smallest number of steps from `least` on that the pieces share evenly."""
+        return -(-least // self.legs) * self.legs
+
+    def gone(self, steps: int) -> Floats:
+        """Strain (steps+1,) by which the path has gone along its conditions, there and back."""
+        share = np.linspace(0, 1, steps + 1)
+        if not self.cyclic:
+            return share * self.length
+        corners = np.concatenate([[0.0], np.tile([1.0, 0.0, -1.0, 0.0], CYCLES)])
+        there: Floats = np.interp(share * self.legs, np.arange(self.legs + 1), corners) * self.length
+        return there
+
+
+TESTS = {
+    test.name: test
+    for test in (
+        ElementTest(
+            "isotropic", "Isotropic compression", (given((1, 0, 0), -0.5), given((0, 1, 0), -0.5), XY), 0.01
+        ),
+        ElementTest("oedometric", "Oedometric compression", (XX, given((0, 1, 0), -1), XY), 0.01, loose=0.01),
+        ElementTest("biaxial", "Drained biaxial compression", (held(1, 0, 0), given((0, 1, 0), -1), XY), 0.055),
+        ElementTest(
+            "constant_s", "Shear at constant mean stress", (given((1, -1, 0), 1), held(0.5, 0.5, 0), XY), 0.07
+        ),
+        ElementTest(
+            "shear_stress", "Simple shear at constant vertical stress",
+            (XX, held(0, 1, 0), given((0, 0, 1), 0.5)), 0.05, shear=True,
+        ),
+        ElementTest(
+            "shear_volume", "Simple shear at constant volume", (XX, YY, given((0, 0, 1), 0.5)), 0.02,
+            shear=True, closed=True,
+        ),
+        ElementTest(
+            "undrained", "Undrained biaxial compression", (given((1, 0, 0), 1), given((0, 1, 0), -1), XY), 0.01,
+            closed=True,
+        ),
+        ElementTest(
+            "cyclic_shear", "Cyclic simple shear at constant vertical stress",
+            (XX, held(0, 1, 0), given((0, 0, 1), 0.5)), 0.02, shear=True, cyclic=True,
+        ),
+    )
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Followed:
+    """Strain (N+1,3), sigma (N+1,4), history (N+1,H); `failed`: why it ends before the last step, or nothing."""
+
+    strain: Floats
+    sigma: Floats
+    history: Floats
+    failed: str = ""
+
+
+def follow(element: Element, test: ElementTest, steps: int, start: Floats) -> Followed:
+    """The test in equal steps from the stress `start` (4,); what cannot go on ends there and says why."""
+    states, failed = [element.start(start)], ""
+    size, before = scale_of(element, states[0]), np.zeros(3)
+    free = any(condition.of == "stress" for condition in test.conditions)
+    for number, move in enumerate(moves(test, steps), 1):
+        last = states[-1]
+        try:
+            if free:
+                end = solved(element, test, last, move, before, size)
+                before = end.strain - last.strain
+            else:
+                end = finite(element.step(last, move[None])[0])
+            states.append(end)
+        except ElementFailed as error:
+            failed = f"{error}, at step {number} of {steps}"
+            break
+    strain, sigma, history = (np.array([getattr(s, name) for s in states]) for name in ("strain", "sigma", "history"))
+    return Followed(strain, sigma, history, failed)
+
+
+def solved(element: Element, test: ElementTest, last: State, move: Floats, before: Floats, size: float) -> State:
+    """The next state: from the last increment, or from what is given alone. Raises ElementFailed."""
+    residuals, sizes = control(test, last, move), scales(test, move, size)
+    if before @ move > 0:
+        with suppress(ElementFailed):
+            return element.solve(last, residuals, before, sizes)
+    return element.solve(last, residuals, move, sizes)
+
+
+def scale_of(element: Element, state: State) -> float:
+    """A size of stress: that at the start, or what a small strain makes of nothing."""
+    probe = element.step(state, np.array([[-1e-3, -2e-3, 0.0]]))[0]
+    return float(max(np.abs(state.sigma).max(), np.abs(probe.sigma).max()))
+
+
+def moves(test: ElementTest, steps: int) -> Floats:
+    """Strain increments (steps,3) as far as they are given: least squares of the conditions on strains."""
+    if len(test.points):
+        line = np.linspace(0, test.legs, steps + 1)
+        return np.diff([np.interp(line, np.arange(test.legs + 1), column) for column in test.points.T], axis=1).T
+    strains = [condition for condition in test.conditions if condition.of == "strain"]
+    weights = np.array([condition.weights for condition in strains])
+    unit = np.linalg.lstsq(weights, np.array([condition.share for condition in strains]), rcond=None)[0]
+    increments: Floats = np.diff(test.gone(steps))[:, None] * unit
+    return increments
+
+
+def control(test: ElementTest, before: State, move: Floats) -> Callable[[Floats, State], Floats]:
+    """The residuals of one step."""
+    weights = np.array([condition.weights for condition in test.conditions])
+    strains = np.array([condition.of == "strain" for condition in test.conditions])
+    wanted = weights @ move
+
+    def residuals(de: Floats, end: State) -> Floats:
+        stress = weights @ (end.sigma - before.sigma)[[0, 1, 3]]
+        return np.where(strains, weights @ de - wanted, stress)
+
+    return residuals
+
+
+def scales(test: ElementTest, move: Floats, size: float) -> Floats:
+    """Sizes of the residuals."""
+    return np.array([np.abs(move).max() if condition.of == "strain" else size for condition in test.conditions])
+
+
+def finite(state: State) -> State:
+    """The state; ElementFailed where its stress is lost."""
+    if not np.isfinite(state.sigma).all():
+        raise ElementFailed("a stress that is not finite")
+    return state

@@ -1,0 +1,116 @@
+"""Closed forms of UBCSAND in primary loading, compression positive, contraction positive; s and stresses in Pa.
+
+They take the law for its parameters alone. a = Rf/eta_f, k = Gp(s)/s; c = 0 and s above its floor are assumed.
+"""
+
+from math import log
+
+import numpy as np
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+from mpm_verify.solver.material.ubcsand import Ubcsand
+
+# Oedometric loading from s = 50 Pa by the law itself: vertical stress, K0, eta, vertical strain, to the digits given.
+# Independent of this solver; Table 2 with the default Rf.
+OEDOMETRIC = (
+    (100.0, 0.774, 0.128, 0.00058),
+    (500.0, 0.595, 0.254, 0.00239),
+    (1000.0, 0.563, 0.279, 0.00344),
+    (2000.0, 0.542, 0.297, 0.00471),
+    (5000.0, 0.523, 0.313, 0.00683),
+    (10000.0, 0.514, 0.322, 0.00885),
+)
+# Constant s, Table 2, default Rf: s, eta, plastic shear strain, plastic volume strain, elastic shear strain.
+CONSTANT_S = (
+    (1e3, 0.25, 0.00503237, 0.00186561, 0.000628),
+    (1e3, 0.50, 0.02486067, 0.00391504, 0.001256),
+    (1e3, None, 0.02844853, 0.00393832, 0.001297),
+    (5e3, 0.25, 0.01321766, 0.00490007, 0.001018),
+    (5e3, 0.50, 0.06529725, 0.01028295, 0.002035),
+    (5e3, None, 0.07472084, 0.01034411, 0.002103),
+    (1e5, 0.40, 0.19849250, 0.05082919, 0.004000),
+    (1e5, None, 0.45087874, 0.06241816, 0.005165),
+)
+# Drained biaxial compression at 5 kPa: eta, vertical stress, gamma, volume strain, vertical and lateral strain.
+BIAXIAL = (
+    (0.1, 6111.11111, 0.0044620330, 0.0021346378, 0.0032983354, -0.0011636976),
+    (0.2, 7500.00000, 0.0111053749, 0.0046706648, 0.0078880198, -0.0032173550),
+    (0.3, 9285.71429, 0.0219048003, 0.0077029197, 0.0148038600, -0.0071009403),
+    (0.4, 11666.66667, 0.0420140011, 0.0112389473, 0.0266264742, -0.0153875269),
+    (0.5, 15000.00000, 0.0897393120, 0.0144467308, 0.0520930214, -0.0376462906),
+)
+ETA_AT_TWO_PERCENT = 0.30674886089  # s = 5 kPa, total shear strain 0.02
+
+
+def hardening(law: Ubcsand, s: float) -> float:
+    """k = Gp/s."""
+    return float(law.KGp * (s / law.Pa) ** (law.np - 1))
+
+
+def plastic_shear(law: Ubcsand, s: float, eta: float) -> float:
+    """gamma_p at constant s from eta = 0: eta/(1 - a eta) = k gamma_p."""
+    return eta / (1 - law.Rf / law.eta_f * eta) / hardening(law, s)
+
+
+def plastic_volume(law: Ubcsand, s: float, eta: float) -> float:
+    """eps_v_p on the same path. Raises ValueError for Rf = 0."""
+    if not law.Rf > 0:
+        raise ValueError("the closed form needs Rf above zero")
+    a = law.Rf / law.eta_f
+    rest = 1 - a * eta
+    return (law.eta_cv * eta / rest - (log(rest) + 1 / rest - 1) / a**2) / hardening(law, s)
+
+
+def elastic_shear(law: Ubcsand, s: float, eta: float) -> float:
+    """gamma_e = t/G."""
+    return eta * s / law.moduli(s)[0]
+
+
+def ratio_at(law: Ubcsand, s: float, gamma: float) -> float:
+    """eta at a total shear strain, constant s; eta_f beyond the strain that reaches it."""
+
+    def left(eta: float) -> float:
+        return plastic_shear(law, s, eta) + elastic_shear(law, s, eta) - gamma
+
+    return law.eta_f if left(law.eta_f) <= 0 else float(brentq(left, 0.0, law.eta_f, xtol=1e-15))
+
+
+def volume_at(law: Ubcsand, s: float, gamma: float) -> float:
+    """eps_v_p at a total shear strain, constant s; beyond failure it dilates at a constant rate."""
+    eta = ratio_at(law, s, gamma)
+    beyond = gamma - elastic_shear(law, s, eta) - plastic_shear(law, s, eta)
+    return plastic_volume(law, s, eta) + (law.eta_cv - law.eta_f) * max(0.0, beyond)
+
+
+def biaxial(law: Ubcsand, s3: float, eta: float) -> tuple[float, float]:
+    """gamma and eps_v of drained biaxial compression at constant s3 up to eta <= eta_f, by quadrature."""
+
+    def moduli(e: float) -> tuple[float, float, float, float]:
+        s = s3 / (1 - e)
+        G, K = law.moduli(s)
+        return s3 / (1 - e) ** 2, G, K, 1 / (hardening(law, s) * (1 - law.Rf / law.eta_f * e) ** 2)
+
+    def shear(e: float) -> float:
+        rate, G, _, slip = moduli(e)
+        return rate / G + slip
+
+    def volume(e: float) -> float:
+        rate, G, K, slip = moduli(e)
+        return rate / (K + G / 3) + (law.eta_cv - e) * slip
+
+    both = [quad(f, 0.0, eta, epsabs=1e-14, epsrel=1e-12)[0] for f in (shear, volume)]
+    return float(both[0]), float(both[1])
+
+
+def isotropic(law: Ubcsand, s0: float, volume: float) -> float:
+    """s after isotropic compression in the plane by `volume` from s0: ds = (K + G/3) d eps_v, no plastic strain.
+
+    In closed form where ne = me, as in Table 2. Raises ValueError otherwise.
+    """
+    if law.ne != law.me:
+        raise ValueError("the closed form needs ne = me")
+    stiff = (law.KBe + law.KGe / 3) * law.Pa ** (1 - law.ne)
+    if law.ne == 1:
+        return float(s0 * np.exp(stiff * volume))
+    return float((s0 ** (1 - law.ne) + (1 - law.ne) * stiff * volume) ** (1 / (1 - law.ne)))

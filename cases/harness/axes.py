@@ -1,0 +1,165 @@
+"""The axes of a study beside the cells: time step, particles per cell, and where the particles lie in their cells.
+
+Each is refined with the others held, so that each error is seen alone. All from finished runs; a study with one value
+on an axis has nothing there.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import exp, log, sqrt
+from statistics import median
+
+import numpy as np
+
+from mpm_verify.cases.harness.series import Series, collect
+from mpm_verify.cases.harness.study import Result, Run
+from mpm_verify.cases.judging.fit import Fit
+
+Results = Mapping[str, Result]
+NOT_RUN = "not run yet"
+
+
+@dataclass(frozen=True)
+class TimeAxis:
+    """Errors of one series on its finest cells, the largest time step first; `courants` and `errors` (n,), n > 1."""
+
+    run: Run  # with the largest time step
+    courants: tuple[float, ...]
+    errors: tuple[float, ...]
+
+    @property
+    def orders(self) -> tuple[float | None, ...]:
+        """Local order in the time step (n-1,), None where an error is zero. An error of space makes it small."""
+        return _slopes(self.courants, self.errors)
+
+    @property
+    def shares(self) -> tuple[float, ...]:
+        """What the time step makes of each error, (n,): |e(dt) - e(smallest dt)| / e(dt)."""
+        return tuple(abs(e - self.errors[-1]) / e if e else 0.0 for e in self.errors)
+
+
+@dataclass(frozen=True)
+class ParticleAxis:
+    """Errors of one method and solution on the same cells, fewest particles first; `ppc` and `errors` (n,), n > 1."""
+
+    run: Run  # with the fewest particles
+    ppc: tuple[int, ...]
+    errors: tuple[float, ...]
+
+    @property
+    def orders(self) -> tuple[float | None, ...]:
+        """Local order in the spacing of the particles, dx / sqrt(ppc), (n-1,)."""
+        return _slopes([1 / sqrt(count) for count in self.ppc], self.errors)
+
+
+@dataclass(frozen=True)
+class PositionAxis:
+    """Errors of the replicates of one series; `cells` (n,), `errors` n tuples, the usual place first in each."""
+
+    run: Run  # the coarsest one
+    cells: tuple[int, ...]
+    errors: tuple[tuple[float, ...], ...]
+
+    @property
+    def ends(self) -> tuple[tuple[float, float, float], ...]:
+        """Smallest, middle and largest error of each level."""
+        return tuple((min(e), median(e), max(e)) for e in self.errors)
+
+    @property
+    def alone(self) -> Fit:
+        """The fit of the usual places only: its interval comes from the residuals."""
+        return self._fit([e[:1] for e in self.errors])
+
+    @property
+    def together(self) -> Fit:
+        """The fit of all replicates: its interval comes from their scatter."""
+        return self._fit(self.errors)
+
+    def _fit(self, errors: Sequence[Sequence[float]]) -> Fit:
+        return Fit(1 / np.array(self.cells), [np.array(e) for e in errors])
+
+
+def time_axes(runs: Sequence[Run], results: Results, quantity: str = "u", norm: str = "rms") -> list[TimeAxis]:
+    """One a series that has two finished time steps or more."""
+    found = []
+    for series in collect(runs):
+        pairs = [(run, e) for run in series.times if (e := error(run, results, quantity, norm)) is not None]
+        if len(pairs) > 1:
+            found.append(TimeAxis(pairs[0][0], tuple(run.courant for run, _ in pairs), tuple(e for _, e in pairs)))
+    return found
+
+
+def particle_axes(runs: Sequence[Run], results: Results, quantity: str = "u", norm: str = "rms") -> list[ParticleAxis]:
+    """One a method, solution and cell count that finished with two particle counts or more."""
+    points: dict[tuple[str, str, int], list[tuple[Run, float]]] = {}
+    for series in collect(runs):
+        for run, errors in zip(series.runs, replicated(series, results, quantity, norm), strict=True):
+            if errors:
+                points.setdefault((run.method, run.solution, run.cells), []).append((run, middle(errors)))
+    return [
+        ParticleAxis(found[0][0], tuple(run.ppc for run, _ in found), tuple(e for _, e in found))
+        for found in points.values()
+        if len(found) > 1
+    ]
+
+
+def position_axes(runs: Sequence[Run], results: Results, quantity: str = "u", norm: str = "rms") -> list[PositionAxis]:
+    """One a series whose replicates have all finished on some level, with those levels."""
+    found = []
+    for series in collect(runs):
+        levels = zip(series.runs, replicated(series, results, quantity, norm), strict=True)
+        whole = [(run, errors) for run, errors in levels if len(errors) > 1]
+        if whole:
+            found.append(PositionAxis(series.first, tuple(run.cells for run, _ in whole), tuple(e for _, e in whole)))
+    return found
+
+
+def replicated(series: Series, results: Results, quantity: str, norm: str) -> list[tuple[float, ...]]:
+    """Errors of each level and its replicates, see `level`."""
+    return [level(runs, results, quantity, norm)[0] for runs in series.replicates]
+
+
+def level(runs: Sequence[Run], results: Results, quantity: str, norm: str) -> tuple[tuple[float, ...], str]:
+    """Errors of a run and its replicates; none where one of them is not done or failed, and why.
+
+    A replicate that cannot take its first step is left out: its domains at the edge are too wide for the method, which
+    says nothing of the method where they are not.
+    """
+    errors = []
+    for number, run in enumerate(runs):
+        result, which = results.get(run.digest), f", replicate {number + 1}" if number else ""
+        if number and result and result.failure and result.failure.step == 0:
+            continue
+        if result is None or result.status == "failed":
+            return (), f"{result.failure}{which}" if result else NOT_RUN + which
+        errors.append(result.errors[quantity][norm])
+    return tuple(errors), ""
+
+
+def error(run: Run, results: Results, quantity: str, norm: str) -> float | None:
+    """An error of a finished run, None where there is none."""
+    result = results.get(run.digest)
+    return result.errors.get(quantity, {}).get(norm) if result and result.status == "finished" else None
+
+
+def middle(errors: Sequence[float]) -> float:
+    """Geometric mean over replicates, as the order rule takes it; the error itself where there is one."""
+    if len(errors) == 1 or min(errors) == 0:
+        return sum(errors) / len(errors)
+    return exp(sum(map(log, errors)) / len(errors))
+
+
+def crossed(result: Result | None) -> float | None:
+    """Faces of cells that a particle passed in the whole run, on average; None where the run is not done."""
+    return result.crossings / result.particles if result else None
+
+
+def local(pairs: Sequence[tuple[float, float]]) -> list[float | None]:
+    """Local orders (n-1,) of (size, error) pairs, coarse to fine; None where an error is zero."""
+    return list(_slopes([h for h, _ in pairs], [e for _, e in pairs]))
+
+
+def _slopes(sizes: Sequence[float], errors: Sequence[float]) -> tuple[float | None, ...]:
+    """log(e1/e2) / log(h1/h2) of neighbours."""
+    steps = zip(sizes[:-1], sizes[1:], errors[:-1], errors[1:], strict=True)
+    return tuple(log(a / b) / log(s / t) if a > 0 and b > 0 else None for s, t, a, b in steps)

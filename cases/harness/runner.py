@@ -1,0 +1,165 @@
+"""Takes each run that the store does not hold yet, on any executor; what fails is a result and the sweep goes on."""
+
+import multiprocessing
+import os
+import signal
+import threading
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from importlib import import_module
+from multiprocessing.queues import SimpleQueue as Queue
+from pathlib import Path
+from typing import Any, ClassVar, TypeVar
+
+from mpm_verify.cases.harness.store import Store, StoreError
+
+T = TypeVar("T")
+Run = Any  # of any case: digest, case, cost; Results and Studies likewise
+Result = Any
+Study = Any
+
+
+class RunnerError(Exception):
+    """The runs cannot go on, for a reason outside them; one line."""
+
+
+def cost(run: Run) -> float:
+    """Particle updates, up to a factor: what a run takes grows with it."""
+    return float(run.cost)
+
+
+def pending(study: Study, store: Store) -> list[Run]:
+    """The runs still to be done, the longest first, so that none is left alone at the end."""
+    once = {run.digest: run for run in study.runs}
+    return sorted((run for digest, run in once.items() if store.get(digest) is None), key=cost, reverse=True)
+
+
+def perform(run: Run, folder: Path, threads: int) -> Result:
+    """One run, in whichever process this is, to its place in the store. Memory that does not suffice is not stored."""
+    from mpm_verify.solver._jit import use_threads
+
+    use_threads(threads)
+    result, arrays = import_module(f"mpm_verify.cases.{run.case}.case").execute(run, Ticker(run.digest))
+    Store(folder, run.case).put(result, arrays)
+    return result
+
+
+class Ticker:
+    """Tells how far a run is, a few times a second at most, to whoever listens: `tell` of this process."""
+
+    tell: ClassVar[Callable[[tuple[str, float]], None]] = staticmethod(lambda news: None)
+    PAUSE = 0.25  # seconds
+
+    def __init__(self, digest: str) -> None:
+        self.digest, self.last = digest, time.monotonic()
+
+    def __call__(self, share: float) -> None:
+        """The run has done this share of its steps."""
+        now = time.monotonic()
+        if now - self.last > self.PAUSE:
+            self.last = now
+            type(self).tell((self.digest, share))
+
+
+def run_study(
+    study: Study,
+    store: Store,
+    executor: Executor,
+    threads: int,
+    done: Callable[[Result], None] = lambda result: None,
+    poll: Callable[[], None] = lambda: None,
+) -> dict[str, Result]:
+    """All Results of the study by digest; those that are stored are read, the others run.
+
+    `done` hears of each new Result, `poll` is called a few times a second. Raises RunnerError where a worker dies,
+    StoreError where a Result cannot be written; what is stored stays.
+    """
+    waiting = {executor.submit(perform, run, store.folder, threads): run for run in pending(study, store)}
+    lost: list[tuple[Run, Exception]] = []
+    try:
+        while waiting:
+            finished, _ = wait(waiting, timeout=Ticker.PAUSE, return_when=FIRST_COMPLETED)
+            poll()
+            for future in finished:
+                run = waiting.pop(future)
+                try:
+                    done(future.result())
+                except (StoreError, BrokenProcessPool, MemoryError):
+                    raise
+                except Exception as error:  # a defect of ours in one run: the sweep goes on, and says so at its end
+                    lost.append((run, error))
+    except BrokenProcessPool as error:
+        raise RunnerError(
+            "a worker process died, perhaps for want of memory; try --jobs 1; stored runs are kept"
+        ) from error
+    except MemoryError as error:
+        raise RunnerError("not enough memory; try --jobs 1 or fewer cells; stored runs are kept") from error
+    if lost:
+        (run, defect), more = lost[0], f", and in {len(lost) - 1} more" if lost[1:] else ""
+        raise RunnerError(f"a defect of verify in {run}{more}: {defect!r}; the other runs are stored") from defect
+    return stored(study, store)
+
+
+class InProcess(Executor):
+    """Runs what is submitted at once, here."""
+
+    def submit(self, fn: Callable[..., T], /, *args: Any, **kwargs: Any) -> Future[T]:
+        """A future that is done."""
+        future: Future[T] = Future()
+        try:
+            future.set_result(fn(*args, **kwargs))
+        except Exception as error:
+            future.set_exception(error)
+        return future
+
+
+def stored(study: Study, store: Store) -> dict[str, Result]:
+    """The Results that the store holds for the study."""
+    found = ((run.digest, store.get(run.digest)) for run in study.runs)
+    return {digest: result for digest, result in found if result is not None}
+
+
+@contextmanager
+def process_pool(jobs: int) -> Iterator[tuple[ProcessPoolExecutor, Callable[[], list[tuple[str, float]]]]]:
+    """Worker processes that end with this one, and a function that gives their news since it was last called.
+
+    Spawned: a fork of a process that has used OpenMP threads hangs.
+    """
+    context = multiprocessing.get_context("spawn")
+    news: Queue[tuple[str, float]] = context.SimpleQueue()
+
+    def heard() -> list[tuple[str, float]]:
+        items = []
+        while not news.empty():
+            items.append(news.get())
+        return items
+
+    others = set(multiprocessing.active_children())
+    executor = ProcessPoolExecutor(jobs, mp_context=context, initializer=begin, initargs=(os.getpid(), news))
+    try:
+        yield executor, heard
+    except BaseException:  # Ctrl-C among them: nobody waits for runs whose Results nobody will take
+        for worker in set(multiprocessing.active_children()) - others:
+            worker.terminate()
+        raise
+    finally:
+        executor.shutdown(cancel_futures=True)
+
+
+def begin(parent: int, news: "Queue[tuple[str, float]]") -> None:
+    """First thing in a worker: where to tell news, and a watch over the parent.
+
+    A worker that outlived its parent would do a run that the parent's successor does too.
+    """
+    Ticker.tell = staticmethod(news.put)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C goes to the whole group; the parent ends its workers
+
+    def watch() -> None:
+        while os.getppid() == parent:
+            time.sleep(0.2)
+        os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()

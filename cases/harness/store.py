@@ -1,0 +1,148 @@
+"""The run store: one folder a study, one Result a run, written atomically; what is stored is not run again.
+
+DIR/study.json           the Study
+DIR/runs/<digest>.json   a Result
+DIR/runs/<digest>.npz    its arrays, float32. Of mms the particles at the last step: X, x (P,2), F (P,2,2), corners
+                         (P,4,2), error_u (P,); of column see cases/column/case.py
+"""
+
+import fcntl
+import io
+import json
+import os
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+from zipfile import BadZipFile
+
+import numpy as np
+from pydantic import TypeAdapter, ValidationError
+
+from mpm_verify.cases.harness.kinds import kind
+from mpm_verify.cases.harness.study import FORMAT
+
+Arrays = dict[str, "np.ndarray[Any, np.dtype[np.float32]]"]
+HOUR = 3600.0
+
+
+class StoreError(Exception):
+    """The folder cannot be read or written; the message is one line that says what to do."""
+
+
+def make(folder: Path) -> None:
+    """The folder, new or there."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise StoreError(
+            f"cannot make the study folder {folder}: {error.strerror}; give a writable one with --out"
+        ) from error
+
+
+def case_of(folder: Path) -> str:
+    """The case of the study that a folder holds; mms where there is nothing that says so."""
+    try:
+        data = json.loads((folder / "study.json").read_bytes())
+        return str(data.get("case", "mms")) if isinstance(data, dict) else "mms"
+    except (OSError, ValueError):
+        return "mms"
+
+
+class Store:
+    """Results of a case on disk below `folder`. Raises StoreError where it cannot be made, read or written."""
+
+    def __init__(self, folder: Path, case: str = "mms") -> None:
+        self.folder, self.case = folder, case
+        self.runs = folder / "runs"
+
+    def create(self, study: Any) -> None:
+        """Make the folder and write study.json; Results already there stay, a broken study.json is not written over."""
+        make(self.runs)
+        for leftover in self.runs.glob(".*"):  # of a process that was killed while it wrote
+            with suppress(FileNotFoundError):
+                if time.time() - leftover.stat().st_mtime > HOUR:
+                    leftover.unlink()
+        if (self.folder / "study.json").exists():
+            self.study()
+        self.write(self.folder / "study.json", json.dumps(asdict(study), indent=1).encode())
+
+    def study(self) -> Any:
+        """The study of this folder."""
+        return self._read(self.folder / "study.json", kind(self.case).study)
+
+    def put(self, result: Any, arrays: Arrays) -> None:
+        """Write arrays, then the Result: the JSON file is what makes a run stored."""
+        path = self.runs / result.digest
+        buffer = io.BytesIO()
+        np.savez(buffer, allow_pickle=False, **arrays)
+        self.write(path.with_suffix(".npz"), buffer.getvalue())
+        self.write(path.with_suffix(".json"), json.dumps(asdict(result), indent=1).encode())
+
+    def get(self, digest: str) -> Any:
+        """The stored Result of that name, None if the run is still to be done."""
+        path = self.runs / f"{digest}.json"
+        return self._read(path, kind(self.case).result) if path.exists() else None
+
+    def arrays(self, digest: str) -> Arrays:
+        """The arrays of that run."""
+        path = self.runs / f"{digest}.npz"
+        try:
+            with path.open("rb") as file, np.load(file, allow_pickle=False) as stored:
+                return {name: stored[name] for name in stored.files}
+        except (OSError, ValueError, EOFError, BadZipFile) as error:
+            raise StoreError(
+                f"cannot read {path}: {error}; delete it and its .json file to run that run again"
+            ) from error
+
+    def _read(self, path: Path, adapter: TypeAdapter[Any]) -> Any:
+        try:
+            data = json.loads(path.read_bytes())
+            if data.get("format") == FORMAT and data.get("case", data.get("run", {}).get("case", "mms")) != self.case:
+                raise StoreError(f"{path.parent} holds another case than {self.case}; use another --out folder")
+            if data.get("format") != FORMAT:
+                raise StoreError(
+                    f"{path} has format {data.get('format')}, this version reads {FORMAT}; use another --out folder"
+                )
+            return adapter.validate_python(data)
+        except FileNotFoundError as error:
+            raise StoreError(f"{path.parent} is no study folder: it holds no {path.name}") from error
+        except (OSError, ValueError, AttributeError, RecursionError, ValidationError) as error:
+            raise StoreError(
+                f"{path} is broken and was left as it is; move it away, and what it held is made again"
+            ) from error
+
+    @contextmanager
+    def locked(self) -> Iterator[None]:
+        """Hold the folder for this process; another that asks meanwhile gets a StoreError, and not the same runs."""
+        make(self.runs)
+        handle = os.open(self.folder, os.O_RDONLY)  # the folder itself: a file for it would be one more in the study
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError as error:
+            os.close(handle)
+            raise StoreError(f"another verify works in {self.folder}; wait for it or give another --out") from error
+        try:
+            yield
+        finally:
+            os.close(handle)
+
+    @staticmethod
+    def write(path: Path, data: bytes) -> None:
+        """Atomic: a reader sees the old file or the whole new one, whenever the power goes."""
+        try:
+            temporary = path.with_name(f".{path.name}.{os.getpid()}.{threading.get_ident()}")
+            try:
+                with temporary.open("wb") as file:
+                    file.write(data)
+                    file.flush()
+                    os.fsync(file.fileno())
+                os.replace(temporary, path)
+            except BaseException:
+                temporary.unlink(missing_ok=True)
+                raise
+        except OSError as error:
+            raise StoreError(f"cannot write {path}: {error.strerror}; results stored before are kept") from error

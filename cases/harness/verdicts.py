@@ -1,0 +1,152 @@
+"""From Results to verdicts: which levels belong to which declared quantity, and what the order rule says of them."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from mpm_verify.cases.harness.axes import crossed, error, level, local, middle, replicated
+from mpm_verify.cases.harness.series import Head, Series, collect
+from mpm_verify.cases.harness.study import Declared, Result, Run, Study
+from mpm_verify.cases.judging.order import Expectation, Level, Outcome, Quantity, Verdict, judge, judge_family
+from mpm_verify.cases.judging.stall import BELOW, USUAL, Measured, Peer, Stall, explain
+
+EXIT = {Outcome.PASS: 0, Outcome.FAIL: 1, Outcome.ERROR: 2, Outcome.INCONCLUSIVE: 3}
+NOTHING_EXPECTED = Expectation(order=None)  # only its slope is used
+STALLS = ("u", "rms")  # other quantities have orders of their own, which nobody has registered
+DOUBLE = 1.8
+Results = Mapping[str, Result]
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A declared quantity with its verdict. Where it is only shown, the verdict is shown too and decides nothing.
+
+    `results` are those of the levels with the particles at their usual places, None for runs not done.
+    """
+
+    declared: Declared
+    verdict: Verdict
+    levels: tuple[Level, ...]  # coarse to fine
+    finest: Result | None
+    results: tuple[Result | None, ...] = ()
+    stall: Stall | None = None
+
+    @property
+    def crossings(self) -> tuple[float | None, ...]:
+        """Faces of cells that a particle passed in the run of each level."""
+        return tuple(crossed(result) for result in self.results)
+
+
+def findings(study: Study, results: Results) -> list[Finding]:
+    """Findings in the order of the declarations; `results` by digest, those not there are runs not done."""
+    known = {series.head: series for series in collect(study.runs)}
+    quantities = [_quantity(d, known.get(_head(d)), results) for d in study.declared]
+    judged = [i for i, d in enumerate(study.declared) if d.judged]
+    verdicts = dict(zip(judged, judge_family([quantities[i] for i in judged]), strict=True))
+    found = []
+    for i, (declared, quantity) in enumerate(zip(study.declared, quantities, strict=True)):
+        verdict = verdicts.get(i) or judge(
+            quantity.levels, quantity.expectation, floor=quantity.floor, dt_halved=quantity.dt_halved
+        )
+        series = known.get(_head(declared))
+        done = tuple(results.get(run.digest) for run in series.runs) if series else ()
+        found.append(Finding(declared, verdict, tuple(quantity.ordered), done[-1] if done else None, done))
+    return _with_stalls(found, known, results)
+
+
+def exit_code(found: Sequence[Finding]) -> int:
+    """0 all pass, 1 a fail, 2 an error, 3 inconclusive or nothing judged; the worst decides (fail before error)."""
+    codes = {EXIT[f.verdict.outcome] for f in found if f.declared.judged}
+    return next((code for code in (1, 2, 3) if code in codes), 0 if codes else 3)
+
+
+def refinement(declared: Declared, runs: Sequence[Run]) -> list[Run]:
+    """The runs of a declared quantity at the Courant number of the study, coarse to fine, at their usual places."""
+    return next((list(series.runs) for series in collect(runs) if series.head == _head(declared)), [])
+
+
+def _head(declared: Declared) -> Head:
+    return declared.method, declared.solution, declared.ppc
+
+
+def _quantity(declared: Declared, series: Series | None, results: Results) -> Quantity:
+    """The levels of one declared quantity, and its error with half the time step on the finest level."""
+    if series is None:
+        return Quantity([], declared.expectation or NOTHING_EXPECTED, 0.0, None)
+    levels = [
+        Level(1 / runs[0].cells, *level(runs, results, declared.quantity, declared.norm)) for runs in series.replicates
+    ]
+    floors = [r.floor.get(declared.quantity, 0.0) for run in series.runs if (r := results.get(run.digest))]
+    half = error(series.halved, results, declared.quantity, declared.norm) if series.halved else None
+    return Quantity(levels, declared.expectation or NOTHING_EXPECTED, max(floors, default=0.0), half)
+
+
+def _with_stalls(found: Sequence[Finding], known: Mapping[Head, Series], results: Results) -> list[Finding]:
+    """The findings, those of the displacement with the stall of their refinement."""
+    displacements = [f for f in found if (f.declared.quantity, f.declared.norm) == STALLS and f.levels]
+    peers = {_head(f.declared): peer for f in displacements if (peer := _peer(f))}
+    stalls = {_head(f.declared): explain(_measured(f, known, results, peers)) for f in displacements}
+    return [replace(f, stall=stalls.get(_head(f.declared))) if f in displacements else f for f in found]
+
+
+def _peer(found: Finding) -> Peer | None:
+    """What other methods are told of this one; None if a level has no error."""
+    if any(each.ended for each in found.levels):
+        return None
+    done = doublings(found)
+    order = local([(each.h, middle(each.errors)) for each, _ in done])[-1:]
+    finest = done[-1][1] if done else None
+    if finest is None or not order or order[0] is None:
+        return None
+    return Peer(found.declared.method, order[0], crossed(finest) or 0.0, finest.gap)
+
+
+def _measured(found: Finding, known: Mapping[Head, Series], results: Results, peers: Mapping[Head, Peer]) -> Measured:
+    """The numbers that can tell why a refinement stalls."""
+    d, series = found.declared, known[_head(found.declared)]
+    done = doublings(found)
+    cells = tuple(result.run.cells for _, result in done)
+    lost = [
+        f"the run with {result.run.cells} cells ended: {result.failure}"
+        for result in found.results
+        if result and result.failure and cells and result.run.cells > cells[-1]
+    ]
+    order = d.expectation.order if d.expectation and d.expectation.order is not None else USUAL
+    others = [peer for key, peer in peers.items() if key[0] != d.method and key[1:] == (d.solution, d.ppc)]
+    finest = bool(done) and done[-1][1].run == series.runs[-1]  # else the run with half the time step is of other cells
+    return Measured(
+        cells,
+        tuple(middle(each.errors) for each, _ in done),
+        tuple(crossed(result) or 0.0 for _, result in done),
+        tuple(result.gap for _, result in done),
+        d.ppc,
+        max((result.floor.get(d.quantity, 0.0) for _, result in done), default=0.0),
+        error(series.halved, results, *STALLS) if series.halved and finest else None,
+        _other(series, known, results, cells),
+        tuple(others),
+        lost[0] if lost else "",
+        order,
+        d.expectation.below if d.expectation and d.expectation.order is not None else BELOW,
+    )
+
+
+def doublings(found: Finding) -> list[tuple[Level, Result]]:
+    """The finest finished level and those with about half the cells of the next: over less, orders scatter too much."""
+    kept: list[tuple[Level, Result]] = []
+    for each, result in reversed(list(zip(found.levels, found.results, strict=True))):
+        if result and not each.ended and (not kept or each.h >= DOUBLE * kept[0][0].h):
+            kept.insert(0, (each, result))
+    return kept
+
+
+def _other(
+    series: Series, known: Mapping[Head, Series], results: Results, cells: Sequence[int]
+) -> tuple[int, tuple[float, ...]] | None:
+    """Errors of the two finest of `cells` with the next larger particle count, or else the next smaller one."""
+    method, solution, ppc = series.head
+    counts = [head[2] for head in known if head[:2] == (method, solution) and head[2] != ppc]
+    for count in sorted(counts, key=lambda count: (count < ppc, abs(count - ppc))):
+        other = known[method, solution, count]
+        levels = dict(zip((run.cells for run in other.runs), replicated(other, results, *STALLS), strict=True))
+        if cells and levels.get(cells[-1]):
+            return count, tuple(middle(levels[n]) for n in cells[-2:] if levels.get(n))
+    return None

@@ -1,0 +1,59 @@
+"""Gaps and overlaps between the domains of neighbours, measured while a run goes on."""
+
+from dataclasses import InitVar, dataclass, field
+
+import numpy as np
+
+from mpm_verify.solver.layout import Layout, shared_corners
+from mpm_verify.solver.state import Floats, Ints
+from mpm_verify.solver.step import Model
+
+LOOKS = 16  # in a run
+PATCHES, PATCH = 8, 200  # particles are looked at in so many places, and so many together in each
+
+
+@dataclass
+class Gaps:
+    """How far domains are from tiling the body: rms distance of the copies of a corner from their middle.
+
+    Neighbours of the layout share corners; where each has its own, there is a gap or an overlap. In shares of the
+    particle spacing, the largest of all looks. `most` is None for methods that know points only.
+    """
+
+    layout: InitVar[Layout]
+    most: float | None = None
+    chosen: Ints = field(init=False)  # particles, by their rows in the layout
+    owner: Ints = field(init=False)  # of each corner of theirs, (n*4,): which shared corner it is a copy of
+    spacing: float = field(init=False)
+
+    def __post_init__(self, layout: Layout) -> None:
+        self.chosen, self.spacing = patches(layout.X), float(np.sqrt(layout.V0.mean()))
+        bent = None if layout.bent is None else layout.bent[self.chosen]
+        part = Layout(layout.X[self.chosen], layout.V0[self.chosen], layout.r0[self.chosen], bent)
+        self.owner = shared_corners(part)[1].reshape(-1)
+
+    def look(self, model: Model) -> None:
+        """Measure now."""
+        p, row = model.particles, np.empty(len(model.particles), np.int64)
+        row[p.id] = np.arange(len(p))
+        rows = row[self.chosen]
+        corners = model.basis.corners(p.x[rows], p.F[rows], p.domain[rows], model.grid.dx)
+        if corners is not None:
+            self.most = max(self.most or 0.0, self.apart(corners.reshape(-1, 2)) / self.spacing)
+
+    def apart(self, places: Floats) -> float:
+        """rms distance of copies (n,2) from the middle of those of the same corner, over corners with several."""
+        copies = np.bincount(self.owner)
+        middle = np.stack([np.bincount(self.owner, places[:, a]) / copies for a in (0, 1)], axis=-1)
+        several = copies[self.owner] > 1
+        away = (places - middle[self.owner])[several]
+        return float(np.sqrt(np.mean(np.sum(away**2, axis=1)))) if several.any() else 0.0
+
+
+def patches(X: Floats) -> Ints:
+    """Rows of particles in some places, each with its neighbours; all particles where there are few."""
+    if len(X) <= PATCHES * PATCH:
+        return np.arange(len(X))
+    seeds = X[np.linspace(0, len(X) - 1, PATCHES + 2).astype(np.int64)[1:-1]]
+    near = [np.argpartition(((X - seed) ** 2).sum(axis=1), PATCH)[:PATCH] for seed in seeds]
+    return np.unique(np.concatenate(near))

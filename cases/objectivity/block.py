@@ -1,0 +1,79 @@
+"""The turning block held against its closed form, its inertial share, and every misreading on the same run."""
+
+from collections.abc import Mapping
+from concurrent.futures import Executor, Future
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mpm_verify.cases.harness.checks import Check, Curves
+from mpm_verify.cases.objectivity.exact import ramped_column, rotated
+from mpm_verify.cases.objectivity.turning_block import Block, execute
+from mpm_verify.solver.plugins import MISREADINGS, available
+from mpm_verify.solver.state import Floats
+
+PRINTED, SMALL, REST = "block of 1 m", "block of 1 cm", "block of 1 m, not turned"
+GROUP = "Figure 2, the CPDI run"
+Found = Mapping[str, tuple[Curves, str]]
+
+
+def blocks(block: Block) -> dict[str, Block]:
+    """The runs: as printed, a hundredth of it, the inertial forces alone, and each misreading."""
+    named = {PRINTED: block, SMALL: replace(block, L=block.L / 100), REST: replace(block, frame=True)}
+    return named | {name: replace(block, rate=name) for name in available(MISREADINGS)}
+
+
+def start(block: Block, executor: Executor) -> dict[str, Future[tuple[Curves, str]]]:
+    """All of them, the longest first."""
+    named = blocks(block)
+    return {name: executor.submit(execute, named[name]) for name in sorted(named, key=lambda name: -named[name].steps)}
+
+
+def turning(curve: Mapping[str, Floats]) -> NDArray[np.bool_]:
+    """Which samples are of the turn."""
+    late: NDArray[np.bool_] = curve["t"] > 1.0 + 1e-9
+    return late
+
+
+def misses(curve: Mapping[str, Floats], block: Block) -> Floats:
+    """Distance of the mean stress from the closed form at each sample of the turn, largest component."""
+    late = turning(curve)
+    K0 = block.nu / (1 - block.nu)
+    exact = rotated(-K0, -1.0, curve["angle"][late])
+    mean = np.stack([curve[name][late] for name in ("xx", "yy", "xy")], axis=1)
+    found: Floats = np.abs(mean - exact).max(axis=1)
+    return found
+
+
+def checks(block: Block, found: Found) -> list[Check]:
+    """What the runs are held against; stresses in units of the mean vertical stress at the end of the ramp."""
+    if any(found[name][1] for name in (PRINTED, SMALL, REST)):
+        ended = [name for name in (PRINTED, SMALL, REST) if found[name][1]]
+        return [Check(GROUP, f"{name}: {found[name][1]}", np.nan, 0.0, "absolute", "") for name in ended]
+    small, large, rest = (found[name][0]["mean"] for name in (SMALL, PRINTED, REST))
+    late = turning(small)
+    K0 = block.nu / (1 - block.nu)
+    end = int(np.argmin(np.abs(small["t"] - 1.0)))
+    peak = (1 - K0) / 2
+    ramp = large["t"] <= 1.0
+    wave = ramped_column(large["t"][ramp], block.law.wave_speed(), block.L)
+    ripple = float(np.sqrt(((large["yy"][ramp] - wave) ** 2).mean()))
+    static, closed = "static equilibrium", "closed form, stress turned with the block"
+    away = np.array([large["own_yy"][turning(large)].mean() + 1, rest["own_yy"][turning(rest)].mean() + 1])
+    shear = float(np.sqrt((small["own_xy"][late] ** 2).mean()))
+    return [
+        Check(GROUP, "1 cm: vertical stress at the end of the ramp", small["yy"][end], -1.0, "absolute", static, 0.005),
+        Check(GROUP, "1 cm: horizontal stress there", small["xx"][end], -K0, "absolute", static, 0.005),
+        Check(GROUP, "1 cm: largest distance in the turn", misses(small, block).max(), 0.01, "at most", closed),
+        Check(GROUP, "1 cm: largest shear stress", small["xy"].max(), peak, "absolute", closed, 0.005),
+        Check(GROUP, "1 cm: horizontal stress after 90 degrees", small["xx"][-1], -1.0, "absolute", closed, 0.01),
+        Check(GROUP, "1 cm: vertical stress after 90 degrees", small["yy"][-1], -K0, "absolute", closed, 0.01),
+        Check(GROUP, "1 cm: co-rotated shear stress, rms over time", shear, 0.005, "at most", "zero by symmetry"),
+        Check(GROUP, "1 m: vertical stress in the ramp, rms distance", ripple, 0.003, "at most",
+              "linear waves in a column under growing gravity"),
+        Check(GROUP, "1 m: inertial share of the mean vertical stress", away[0], away[1], "absolute",
+              "the same box at rest, with inertial forces", 0.003),
+        Check(GROUP, "1 m: largest distance in the turn", misses(large, block).max(), misses(small, block).max(),
+              "at least", "inertia and waves that the small block does not have"),
+    ]  # fmt: skip

@@ -1,0 +1,203 @@
+"""The paper's rotated block (section 2.2, Figure 2) as a run: gravity ramped over a second, then a quarter turn.
+
+A block of side L lies in an open box on a grid that does not turn. In the first second gravity grows to g: rollers on
+the left, right and bottom confine the block. In the next second box, block and gravity turn by 90 degrees about the
+middle of the block. Gravity turns too, as in the paper: with a fixed one the stress could not follow the block.
+
+The walls of the turning box are nodes with the box's rigid velocity. A node belongs to a wall when its hat function
+reaches beyond it: before the turn these are the nodes on and behind the wall, and during it none is left free whose
+neighbours are partly empty, which no traction would balance. The velocity of a step is the chord of the rotation,
+(R(w dt) - I)(x - c)/dt, which hats hold exactly; so the box turns by exactly w dt a step.
+
+With `frame` nothing turns: the same box at rest feels the inertial forces of the turning one (centrifugal, Coriolis).
+That run shows the inertial share alone, without any rotation of stress.
+"""
+
+from dataclasses import dataclass, field
+from math import ceil, pi
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mpm_verify.cases.harness.checks import Curves
+from mpm_verify.solver._jit import use_threads
+from mpm_verify.solver.basis.cpdi import Cpdi
+from mpm_verify.solver.boundary import moving
+from mpm_verify.solver.layout import per_side, rectangle
+from mpm_verify.solver.material.hypoelastic import Hypoelastic
+from mpm_verify.solver.state import Floats, Grid, Particles
+from mpm_verify.solver.step import Model, RunFailed, advance
+
+OMEGA = pi / 2  # a quarter turn in a second
+SAMPLES = 200  # of each stage, at most
+RAMP = 1.0
+
+
+@dataclass(frozen=True)
+class Block:
+    """E, nu as in the paper; the density, which it does not give, is that of its Table 1, g that of its section 3.
+
+    Raises ValueError for a number of cells or particles per cell that no block has.
+    """
+
+    L: float = 1.0
+    E: float = 500e3
+    nu: float = 0.3
+    rho0: float = 2650.0
+    g: float = 10.0
+    cells: int = 8
+    ppc: int = 4
+    courant: float = 0.4
+    rate: str = "green_naghdi"
+    frame: bool = False
+
+    def __post_init__(self) -> None:
+        per_side(self.ppc)
+        if not 4 <= self.cells <= 128:
+            raise ValueError(f"{self.cells} cells along the block must be from 4 to 128: its walls are a cell thick")
+
+    @property
+    def law(self) -> Hypoelastic:
+        """The paper's linear elastic law."""
+        return Hypoelastic(E=self.E, nu=self.nu, rho0=self.rho0, rate=self.rate)
+
+    @property
+    def steps(self) -> int:
+        """Of each second."""
+        return ceil(self.law.wave_speed() / (self.courant * self.L / self.cells))
+
+    @property
+    def sigma_v(self) -> float:
+        """Mean vertical stress at the end of the ramp, -rho0 g L / 2."""
+        return -self.rho0 * self.g * self.L / 2
+
+    @property
+    def share(self) -> float:
+        """Inertial share w^2 L / g."""
+        return OMEGA**2 * self.L / self.g
+
+
+def turn(angle: float) -> Floats:
+    """Rotation by an angle, counter-clockwise (2,2)."""
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[c, -s], [s, c]])
+
+
+def angle_at(t: float) -> float:
+    """Of the box."""
+    return OMEGA * max(0.0, t - RAMP)
+
+
+@dataclass
+class Box:
+    """The walls: `rule` of solver.boundary.MovingWalls. `turns` is false for the box at rest."""
+
+    L: float
+    dx: float
+    turns: bool
+    centre: Floats = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.centre = np.full(2, self.L / 2)
+
+    def __call__(self, nodes: Floats, t: float, dt: float) -> tuple[NDArray[np.bool_], Floats, Floats]:
+        """held, value, rate (n,2) for the step from t to t + dt: rollers at first, the rigid motion of the box then."""
+        if t < RAMP - dt / 2:
+            near = self.reaches(nodes, 0.0)
+            held = np.stack([near[:, :2].any(axis=1), near[:, 2]], axis=1)
+            return held, np.zeros(nodes.shape), np.zeros(nodes.shape)
+        angle, step = (angle_at(t), OMEGA * dt) if self.turns else (0.0, 0.0)
+        held = np.repeat(self.reaches(nodes, angle).any(axis=1, keepdims=True), 2, axis=1)
+        out = nodes - self.centre
+        return held, out @ (turn(step) - np.eye(2)).T / dt, -2 * (1 - np.cos(step)) / dt**2 * out
+
+    def reaches(self, nodes: Floats, angle: float) -> NDArray[np.bool_]:
+        """Whether a node's hat reaches beyond the wall on the left, right, bottom (n,3) of the box at that angle."""
+        own = (nodes - self.centre) @ turn(angle)
+        wide = self.dx * np.abs(turn(angle)).sum(axis=0)  # half width of the hat's square along the axes of the box
+        depth = self.L / 2 - np.stack([-own[:, 0], own[:, 0], -own[:, 1]], axis=1)
+        near: NDArray[np.bool_] = np.less(depth, wide[[0, 0, 1]] * (1 - 1e-9))
+        return near
+
+
+@dataclass
+class Gravity:
+    """Body force (P,2) of the particles; of the box at rest, with the inertial forces of the turning one."""
+
+    block: Block
+    centre: Floats = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.centre = np.full(2, self.block.L / 2)
+
+    def __call__(self, particles: Particles, t: float) -> None:
+        """Write particles.b."""
+        down = np.array([0.0, -self.block.g * min(t / RAMP, 1.0)])
+        if not self.block.frame:
+            particles.b[:] = turn(angle_at(t)) @ down
+            return
+        particles.b[:] = down
+        if t > RAMP - 1e-9:
+            x, v = particles.x - self.centre, particles.v
+            particles.b += OMEGA**2 * x + 2 * OMEGA * np.stack([v[:, 1], -v[:, 0]], axis=1)
+
+
+def setup(block: Block) -> Model:
+    """The block at rest, free of stress, in a grid that holds it at every angle."""
+    dx, dt = block.L / block.cells, 1.0 / block.steps
+    margin = ceil(0.25 * block.cells) * dx
+    grid = Grid(dx, np.full(2, -margin), np.full(2, block.L + margin))
+    particles = Cpdi().populate(rectangle(np.zeros(2), np.full(2, block.L), dx, block.ppc), block.rho0)
+    walls = moving(grid, Box(block.L, dx, not block.frame))
+    return Model(grid, particles, Cpdi(), block.law, walls, dt)
+
+
+def spin(model: Model, block: Block) -> None:
+    """The rigid velocity of the box, half a step behind the places as v is, added to what the particles have."""
+    back = np.eye(2) - turn(-OMEGA * model.dt)
+    model.particles.v += (model.particles.x - block.L / 2) @ back.T / model.dt
+
+
+def execute(block: Block) -> tuple[Curves, str]:
+    """Curves of a run, and why it ended early if it did; stresses in units of |sigma_v|.
+
+    `mean`: t, angle, means over the particles xx, yy, zz, xy, in the frame of the box own_xx, own_yy, own_xy, and
+    `shear`, the largest |own_xy| of a particle. `field`: X, Y of the particles, and their own_xx, own_yy, own_xy,
+    averaged over the turn.
+    """
+    use_threads(1)
+    model, load, rows, failed = setup(block), Gravity(block), [], ""
+    every, total, looks = max(1, block.steps // SAMPLES), np.zeros((len(model.particles), 3)), 0
+    try:
+        for step in range(1, 2 * block.steps + 1):
+            if step == block.steps + 1 and not block.frame:
+                spin(model, block)
+            advance(model, load)
+            if step % every == 0 or step % block.steps == 0:
+                own = in_box(model, block)
+                rows.append(row(model, block, own))
+                if step > block.steps:
+                    total[model.particles.id] += own  # rows change places when particles cross cells
+                    looks += 1
+    except RunFailed as error:
+        failed = f"{error.reason} at t = {model.time:.3g}"
+    scale = np.array([1.0, 1.0] + 8 * [abs(block.sigma_v)])
+    names = ("t", "angle", "xx", "yy", "zz", "xy", "own_xx", "own_yy", "own_xy", "shear")
+    mean = dict(zip(names, (np.array(rows).reshape(-1, len(names)) / scale).T, strict=True))
+    own = total / max(1, looks) / abs(block.sigma_v)
+    X = model.particles.in_initial_order("X")
+    field = {"X": X[:, 0], "Y": X[:, 1], "own_xx": own[:, 0], "own_yy": own[:, 1], "own_xy": own[:, 2]}
+    return {"mean": mean, "field": field}, failed
+
+
+def in_box(model: Model, block: Block) -> Floats:
+    """Stress of the particles as the box sees it, xx, yy, xy (P,3)."""
+    Q = turn(0.0 if block.frame else angle_at(model.time))
+    own = np.einsum("ai,pab,bj->pij", Q, model.particles.sigma[:, [0, 3, 3, 1]].reshape(-1, 2, 2), Q)
+    return np.stack([own[:, 0, 0], own[:, 1, 1], own[:, 0, 1]], axis=1)
+
+
+def row(model: Model, block: Block, own: Floats) -> tuple[float, ...]:
+    """One line of `mean`, in units of stress."""
+    angle = 0.0 if block.frame else angle_at(model.time)
+    return (model.time, angle, *model.particles.sigma.mean(axis=0), *own.mean(axis=0), float(np.abs(own[:, 2]).max()))

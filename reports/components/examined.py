@@ -1,0 +1,86 @@
+"""An Examination as a page: sections with words, figures and tables, and every check beside what it is held against."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import pandas as pd
+
+from mpm_verify.cases.harness.checks import Check, Examination
+from mpm_verify.cases.harness.store import Store, StoreError
+from mpm_verify.reports.components.film import Film
+from mpm_verify.reports.components.page import Add, Image, adder, template
+from mpm_verify.reports.components.show import Table
+
+WAYS = {"relative": "± {} of it", "absolute": "± {}", "at least": "or more", "at most": "or less"}
+
+
+@dataclass(frozen=True)
+class Section:
+    """A part of the page: paragraphs, figures with their captions, tables, animations."""
+
+    key: str
+    heading: str
+    text: Sequence[str] = ()
+    figures: Sequence[tuple[Image, str]] = ()
+    tables: Sequence[Table] = ()
+    films: Sequence[Film] = ()
+    wide: bool = False  # a single figure as wide as the page
+
+
+Sections = Callable[[Examination, Add], Sequence[Section]]
+
+
+def render(
+    folder: Path, examination: Examination, sections: Sections, kinds: Sequence[str] = ("svg", "pdf", "png")
+) -> Path:
+    """Write report.html, figures/ in these kinds, tables/checks.csv; `sections` draws what is special.
+
+    Raises StoreError.
+    """
+    try:
+        for name in ("figures", "tables"):
+            (folder / name).mkdir(parents=True, exist_ok=True)
+        _write_csv(folder / "tables" / "checks.csv", examination.checks)
+        missed = [check for check in examination.checks if check.outcome != "PASS"]
+        text = template("examination.html.j2").render(
+            examination=examination,
+            missed=checks_table("Checks that did not pass", missed, group=True) if missed else None,
+            sections=sections(examination, adder(folder / "figures", kinds=kinds)),
+            parameters=Table(
+                "Parameters", ("parameter", "value"), tuple(examination.parameters.items()), texts=("value",)
+            ),
+            environment=Table(
+                "What computed it", ("", "version"), tuple(examination.environment.items()), texts=("version",)
+            ),
+        )
+        Store.write(folder / "report.html", text.encode())
+        return folder / "report.html"
+    except OSError as error:
+        raise StoreError(f"cannot write the report into {folder}: {error.strerror}; the results are kept") from error
+
+
+def checks_table(caption: str, checks: Sequence[Check], group: bool = False) -> Table:
+    """Found beside expected, how close it has to be, and where the expectation comes from."""
+    head = (*(("part",) if group else ()), "check", "outcome", "found", "expected", "allowed", "miss", "source")
+    rows = tuple((*((check.group,) if group else ()), *row(check)) for check in checks)
+    return Table(caption, head, rows, texts=("check", "outcome", "allowed", "source"))
+
+
+def row(check: Check) -> tuple[str, ...]:
+    """A check as text; a bound has no distance from it worth showing."""
+    bound = check.way.startswith("at")
+    allowed = WAYS[check.way].format(f"{check.within:.3g}")
+    miss = "" if bound else f"{check.miss:.2g}"
+    return (check.name, str(check.outcome), digits(check.found), digits(check.expected), allowed, miss, check.source)
+
+
+def digits(value: float) -> str:
+    """Eight digits, so that a reference value can be recognised; powers of ten where it is small or large."""
+    return f"{value:.8g}".replace("-", "\N{MINUS SIGN}", 1) if value < 0 else f"{value:.8g}"
+
+
+def _write_csv(path: Path, checks: Sequence[Check]) -> None:
+    """All checks with full digits."""
+    rows = [{**asdict(check), "miss": check.miss, "outcome": str(check.outcome)} for check in checks]
+    pd.DataFrame(rows).to_csv(path, index=False)

@@ -1,0 +1,54 @@
+"""A comparison of many methods for a paper: the table of their orders and errors, and the lines of the cost figure."""
+
+from mpm_verify.cases.harness.verdicts import Finding
+from mpm_verify.reports.components import words
+from mpm_verify.reports.components.show import Table
+from mpm_verify.reports.figures import style
+from mpm_verify.reports.figures.convergence import methods
+from mpm_verify.reports.figures.cost import Line, Row
+from mpm_verify.reports.frames import Record
+
+
+def figure_rows(record: Record) -> list[Row]:
+    """A row a solution, a line a method and particle count."""
+    several = len({s.first.ppc for s in record.series}) > 1
+    rows = []
+    for solution in record.solutions:
+        lines = []
+        for s in (s for s in record.series if s.first.solution == solution):
+            look = style.look(methods(record), s.first.method, s.first.ppc)
+            label = words.series(s.first) if several else words.method(s.first.method)
+            lines.append(Line(label, s.runs, look.plot))
+        rows.append(Row(solution, lines))
+    return rows
+
+
+def overview(record: Record) -> Table:
+    """The table for a paper: a row a method, a column a solution, the last local order of u and the relative error."""
+    head = ("method", "per cell", *record.solutions)
+    found = {(f.declared.method, f.declared.ppc, f.declared.solution): f for f in record.findings if _is_u(f)}
+    keys = list(dict.fromkeys((s.first.method, s.first.ppc) for s in record.series))
+    rows = tuple(
+        (words.method(m), str(ppc), *(_cell(record, found.get((m, ppc, s))) for s in record.solutions))
+        for m, ppc in sorted(keys, key=lambda key: (methods(record).index(key[0]), key[1]))
+    )
+    caption = "Order of u between the two finest grids that finished, and error there as a share of the exact rms"
+    return Table(caption, head, rows, heads=2)
+
+
+def _is_u(found: Finding) -> bool:
+    return (found.declared.quantity, found.declared.norm) == ("u", "rms")
+
+
+def _cell(record: Record, found: Finding | None) -> str:
+    """`2.00, 1.2e-4`; `lost` where no run finished."""
+    if found is None:
+        return words.DASH
+    finished = [(run, e) for run, e in record.errors(record.series_of(found.declared), "u", "rms")]
+    if not finished:
+        return "lost"
+    result = record.result(finished[-1][0])
+    share = finished[-1][1] / result.scale["u"] if result and result.scale.get("u") else float("nan")
+    orders = found.verdict.local_orders
+    text = f"{words.order(orders[-1]) if orders else words.DASH}, {share:.1e}".replace("e-0", "e-").replace("e+00", "")
+    return text if not found.levels[-1].ended else f"{text} at {words.cell_size(finished[-1][0].cells)}, then lost"

@@ -1,0 +1,104 @@
+"""How names, numbers and outcomes are written: one place, so that every table, figure and sentence says it alike."""
+
+import math
+import re
+
+from mpm_verify.cases.harness.study import Declared, Run
+
+METHODS = {
+    "mpm": "MPM",
+    "gimp": "GIMP",
+    "cpgimp": "cpGIMP",
+    "cpdi": "CPDI",
+    "cpdi2": "CPDI2",
+    "bspline2": "quadratic B-spline",
+    "bspline3": "cubic B-spline",
+}
+QUANTITIES = {"u": "u", "v": "v", "F": "F", "sigma": "\N{GREEK SMALL LETTER SIGMA}"}
+MEANING = {
+    "PASS": "the evidence shows what was registered",
+    "FAIL": "the evidence is against what was registered",
+    "INCONCLUSIVE": "the evidence does not decide; the reason names the run that would",
+    "ERROR": "there is nothing to judge",
+}
+DASH, MINUS, TIMES = "\N{EN DASH}", "\N{MINUS SIGN}", "\N{MULTIPLICATION SIGN}"
+
+
+def method(name: str) -> str:
+    """The name of a method as people write it; the command's word where nothing else is known."""
+    return METHODS.get(name, name.replace("_", " "))
+
+
+def quantity(name: str) -> str:
+    """The symbol of a quantity."""
+    return QUANTITIES.get(name, name)
+
+
+def series(of: Run | Declared) -> str:
+    """Method and particle count: `CPDI, 4 per cell`."""
+    return f"{method(of.method)}, {of.ppc} per cell"
+
+
+def sci(value: float | None) -> str:
+    """Four digits: 1.127e-5; a dash for nothing."""
+    if value is None or math.isnan(value):
+        return DASH
+    if math.isinf(value) or value == 0:
+        return "0" if value == 0 else "∞"
+    digits, exponent = f"{value:.3e}".split("e")
+    return f"{digits}e{int(exponent)}".replace("-", MINUS if value < 0 else "-", 1)
+
+
+def order(value: float | None) -> str:
+    """Two decimals with a true minus sign; a dash for nothing."""
+    if value is None or math.isnan(value):
+        return DASH
+    return "∞" if math.isinf(value) else f"{value:.2f}".replace("-0.00", "0.00").replace("-", MINUS)
+
+
+def percent(share: float) -> str:
+    """A share of 0.034 as 3.4 %."""
+    return f"{100 * share:.1f} %"
+
+
+def interval(ends: tuple[float, float] | None) -> str:
+    """`1.98 to 2.03`; a dash where two levels or fewer leave none."""
+    return DASH if ends is None else f"{order(ends[0])} to {order(ends[1])}"
+
+
+def few(value: float | None) -> str:
+    """One decimal of a count, 16.3, two digits below one, 0.012; a dash for nothing."""
+    if value is None or math.isnan(value):
+        return DASH
+    return f"{value:.1f}" if value >= 1 else f"{value:.2g}"
+
+
+def shift(run: Run) -> str:
+    """Where the particles of a replicate lie, in shares of their spacing; a dash at their usual places."""
+    return DASH if not any(run.offset) else ", ".join(order(share) for share in run.offset)
+
+
+def cell_size(cells: int) -> str:
+    """1/64: people count cells."""
+    return f"1/{cells}"
+
+
+def expected(declared: Declared) -> str:
+    """What was registered: an order with its band, `diverges`, or a dash."""
+    e = declared.expectation
+    if e is None:
+        return DASH
+    if e.order is None:
+        return e.kind
+    return f"{order(e.order)} ({order(e.order - e.below)} to {order(e.order + e.above)})"
+
+
+def prose(reason: str) -> str:
+    """A reason for a reader: `det F ≤ 0` for `det F <= 0`, true minus signs, and a space before %."""
+    text = reason.replace("<=", "≤").replace(">=", "≥")
+    return re.sub(r"(?<=\d)%", " %", re.sub(r"(?<=[ (+])-(?=\d)", MINUS, text))
+
+
+def count(number: int, noun: str) -> str:
+    """`1 run`, `2 runs`."""
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"

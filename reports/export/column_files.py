@@ -1,0 +1,44 @@
+"""What a study of the column leaves as files beside its page: numbers and curves as CSV, snapshots for ParaView."""
+
+from pathlib import Path
+
+import pandas as pd
+
+from mpm_verify.cases.column.claims import told
+from mpm_verify.cases.column.exam import Collapse
+from mpm_verify.cases.column.exam import curves as read_curves
+from mpm_verify.cases.harness.store import Store
+from mpm_verify.reports.export.vtk import write_series
+
+
+def tables(collapse: Collapse, store: Store, folder: Path) -> None:
+    """runs.csv: parameters and numbers of each run; curves.csv: each curve of each run, front to residual."""
+    rows, curves = [], []
+    for run in collapse.study.runs:
+        result = collapse.results.get(run.digest)
+        if result:
+            parameters = {name: getattr(run, name) for name in collapse.study.axes}
+            failure = result.failure.reason if result.failure else ""
+            rows.append(
+                {"digest": run.digest, **parameters, "status": result.status, "failure": failure, **result.values}
+            )
+            columns = {name: values for name, values in read_curves(store, result).items() if values.ndim == 1}
+            curves.append(
+                pd.DataFrame({"digest": run.digest, **{n: told(n, getattr(run, n)) for n in parameters}, **columns})
+            )
+    pd.DataFrame(rows).to_csv(folder / "runs.csv", index=False)
+    if curves:
+        pd.concat(curves).to_csv(folder / "curves.csv", index=False, float_format="%.7g")
+
+
+def files(collapse: Collapse, store: Store, folder: Path) -> None:
+    """Snapshots of each run, see reports/export/vtk.py."""
+    folder.mkdir(exist_ok=True)
+    for run in collapse.study.runs:
+        if result := collapse.results.get(run.digest):
+            arrays = store.arrays(result.digest)
+            named = {
+                key[9:]: values for key, values in arrays.items() if key.startswith("snapshot_") and key != "snapshot_t"
+            }
+            shots = [{key: values[k] for key, values in named.items()} for k in range(len(arrays["snapshot_t"]))]
+            write_series(folder, result.digest, [float(t) for t in arrays["snapshot_t"]], shots)

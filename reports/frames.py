@@ -1,0 +1,107 @@
+"""What a study folder holds, read once: the Study, its Results, and what the order rule says of them."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from mpm_verify.cases.harness.axes import NOT_RUN, level, middle, replicated
+from mpm_verify.cases.harness.series import Series, collect
+from mpm_verify.cases.harness.store import Arrays, Store
+from mpm_verify.cases.harness.study import Declared, Result, Run, Study
+from mpm_verify.cases.harness.verdicts import Finding, findings
+
+
+@dataclass(frozen=True)
+class Record:
+    """A study as stored. `results` by the digest that the study's runs have now; runs not done are not in it.
+
+    `earlier` says that all results come from other sources than those installed: their numbers stand, but a new run of
+    the study would compute them again.
+    """
+
+    store: Store
+    study: Study
+    results: dict[str, Result]
+    earlier: bool
+
+    @cached_property
+    def findings(self) -> list[Finding]:
+        """Findings in the order of the declarations."""
+        return findings(self.study, self.results)
+
+    @cached_property
+    def series(self) -> list[Series]:
+        """One a method, solution and particle count; methods as declared by the study, fewest particles first."""
+        return collect(self.study.runs)
+
+    def series_of(self, declared: Declared) -> Series:
+        """The refinement that a declared quantity is measured on."""
+        return next(s for s in self.series if s.head == (declared.method, declared.solution, declared.ppc))
+
+    @property
+    def solutions(self) -> list[str]:
+        """Each solution of the study once."""
+        return sorted({run.solution for run in self.study.runs})
+
+    @property
+    def missing(self) -> list[Run]:
+        """Runs that the study asks for and that are not stored."""
+        return [run for run in self.study.runs if run.digest not in self.results]
+
+    def result(self, run: Run) -> Result | None:
+        """The stored Result of a run, None if it is still to be done."""
+        return self.results.get(run.digest)
+
+    def error(self, run: Run, quantity: str, norm: str) -> float | None:
+        """An error of a finished run; None if the run failed, is still to be done, or has no such error."""
+        result = self.result(run)
+        if result is None or result.status == "failed":
+            return None
+        return result.errors.get(quantity, {}).get(norm)
+
+    def errors(self, series: Series, quantity: str, norm: str) -> list[tuple[Run, float]]:
+        """The finished levels of a series with their error, coarse to fine; of replicates the mean, as is judged."""
+        levels = zip(series.runs, replicated(series, self.results, quantity, norm), strict=True)
+        return [(run, middle(errors)) for run, errors in levels if errors]
+
+    def failed(self, series: Series) -> list[Run]:
+        """The levels of a series that failed, coarse to fine."""
+        levels = [(runs[0], level(runs, self.results, "u", "rms")) for runs in series.replicates]
+        return [run for run, (errors, why) in levels if not errors and NOT_RUN not in why]
+
+    @property
+    def replicates(self) -> int:
+        """The most runs that one level has."""
+        return max((len(runs) for series in self.series for runs in series.replicates), default=1)
+
+    def arrays(self, run: Run) -> Arrays:
+        """The particles of a stored run at its last step. Raises StoreError if they cannot be read."""
+        return self.store.arrays(self.results[run.digest].digest)
+
+
+def read(folder: Path) -> Record:
+    """The Record of a study folder. Raises StoreError if the folder is none or is broken."""
+    store = Store(folder)
+    study = store.study()
+    return Record(store, study, *held(store, study))
+
+
+def held(store: Store, study: Any) -> tuple[dict[str, Any], bool]:
+    """Results of a study of any case by digest, and whether they are all of earlier sources, as there are no others."""
+    exact = {run.digest: result for run in study.runs if (result := store.get(run.digest))}
+    if exact:
+        return exact, False
+    old = {result.run: result for result in _all(store)}
+    found = {run.digest: old[run] for run in study.runs if run in old}
+    return found, bool(found)
+
+
+def _all(store: Store) -> Iterator[Result]:
+    """Every stored Result, the last written last: what a report of yesterday's study is made from."""
+    files = sorted(store.runs.glob("*.json"), key=lambda file: (file.stat().st_mtime_ns, file.name))
+    for file in files:
+        result = store.get(file.stem)
+        if result is not None:
+            yield result

@@ -1,0 +1,120 @@
+"""More parts of the column's page: solution verification, pictures and films, what keeps the column alive."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from mpm_verify.cases.column.exam import Collapse
+from mpm_verify.cases.column.run import ColumnResult, ColumnRun
+from mpm_verify.cases.harness.store import Store
+from mpm_verify.reports.components.examined import Section
+from mpm_verify.reports.components.film import EACH, MOST, film
+from mpm_verify.reports.components.page import Add
+from mpm_verify.reports.components.show import Table
+from mpm_verify.reports.components.words import DASH, percent
+from mpm_verify.reports.figures import column as draw
+
+FILMS = 8  # of a page
+AXES = {"cells": "cells of the width", "ppc": "particles per cell", "courant": "Courant number"}
+SET_UP = (
+    "The paper's Figure 3: the column at its wall (thick), before it is released; right, its free foot with the cells "
+    "of the grid, the domains of the particles in layers, and their centres."
+)
+
+
+def refinement(collapse: Collapse, add: Add) -> Section:
+    """Richardson extrapolation where levels are refined, scatter where particles are shifted."""
+    figures, rows = [], []
+    heads = ("axis", *(("runs with",) if any(one.runs for one in collapse.refined) else ()))
+    for place, (axis, runs) in enumerate(dict.fromkeys((one.axis, one.runs) for one in collapse.refined)):
+        series = [one for one in collapse.refined if (one.axis, one.runs) == (axis, runs)]
+        image = add(
+            f"refined_{place}", draw.refined(series, f"{AXES[axis]}, finer to the right"), f"Refinement in {axis}."
+        )
+        figures.append(
+            (image, f"Refinement in {axis}{f', {runs}' if runs else ''}: each quantity over its finest value.")
+        )
+        for one in series:
+            spread = ", ".join(f"{value:.4f}" for _, value in reversed(one.levels))
+            rows.append((axis, *((runs,) if len(heads) > 1 else ()), one.quantity, spread, *extrapolated(one.found[0])))
+    tables = []
+    if rows:
+        head = (*heads, "quantity", "coarse to fine [m]", "finest three", "order", "limit", "uncertainty [m]")
+        tables.append(Table("Richardson extrapolation and grid convergence index", head, tuple(rows), texts=head[:5]))
+    if collapse.scattered:
+        head = ("quantity", "runs with", "runs", "mean [m]", "standard deviation [mm]", "range [mm]", "of the mean")
+        tables.append(Table("Scatter over where the particles lie in their cells at first", head, tuple(
+            (one.quantity, one.runs or DASH, str(one.count), f"{one.mean:.4f}", f"{1e3 * one.deviation:.1f}",
+             f"{1e3 * one.reach:.1f}", percent(one.deviation / one.mean))
+            for one in collapse.scattered), texts=("runs with",)))  # fmt: skip
+    text = (
+        "There is no exact solution. Where three levels approach a limit from one side, the order is observed, the "
+        "limit is extrapolated, with an order of 2 at most, and the uncertainty is the grid convergence index, 1.25 "
+        "times the distance from it. Where values go to and fro, or settle at no order of a half or more, nothing "
+        "converges on these levels, and the uncertainty is half the range of the three values: no bound. No difference "
+        "means more than the scatter over the places of particles (study offsets)."
+    )
+    return Section("refinement", "Solution verification", [text], figures, tables)
+
+
+def extrapolated(found: Any) -> tuple[str, ...]:
+    """Of the finest three levels, as text."""
+    limits = (f"{found.order:.2f}", f"{found.limit:.4f}") if found.kind == "converges" else (DASH, DASH)
+    return (found.kind, *limits, f"{found.uncertainty:.4f}")
+
+
+def set_up(store: Store, add: Add, run: ColumnRun, result: ColumnResult) -> Section:
+    """The paper's Figure 3."""
+    arrays = store.arrays(result.digest)
+    x, corners = draw.away(run, arrays["snapshot_x"][0]), arrays.get("snapshot_corners")
+    figure = draw.set_up(run, x, None if corners is None else draw.away(run, corners[0]))
+    return Section(
+        "setup", "The set-up", figures=[(add("set_up", figure, "The column before it is released."), SET_UP)]
+    )
+
+
+def films(collapse: Collapse, store: Store, add: Add, ran: Sequence[tuple[ColumnRun, ColumnResult]]) -> Section:
+    """Snapshots of the last run, and animations of the first few."""
+    run, result = ran[-1]
+    image = add("snapshots", draw.snapshots(run, store.arrays(result.digest)), "Layers of sand at a few times.")
+    caption = f"{collapse.label(run)}: the domains of the particles, in layers by the height at which they began."
+    shown = ran[:FILMS]
+    most, wide = min(EACH, MOST // len(shown)), 1.02 * max(one.values.get("front_999", run.width) for _, one in shown)
+    reels = [film(run, store.arrays(one.digest), collapse.label(run), wide, most) for run, one in shown]
+    return Section("pictures", "The collapse", figures=[(image, caption)], films=reels, wide=True)
+
+
+def alive(collapse: Collapse) -> Section:
+    """What scaling, void strain and smoothing do to the runs, failed ones too."""
+    head = ("run", "limit [cells]", "limited domains", "with void strain", "without stress", "void strain", "det F",
+            "crowding", "outside the cone", "worst t/(s sin φ)", "largest s / ρgh₀", "fastest particle [m/s]",
+            "Courant number", "steps", "CPU [s]", "million updates a second")  # fmt: skip
+    rows = []
+    for run in collapse.study.runs:
+        result = collapse.results.get(run.digest)
+        if result and result.values:
+            v = result.values
+            weight = float(result.parameters["rho0"]) * run.g * run.height
+            rows.append((
+                collapse.label(run), f"{float(result.parameters['domain limit']):.3g}", percent(v["most_cut"]),
+                percent(v["void"]), percent(v["idle"]), f"{v['void_strain']:.3g}",
+                f"{v['least_J']:.3g} to {v['most_largest_J']:.3g}", f"{v['crowding']:.2f}", percent(v["most_outside"]),
+                f"{1 + v['most_beyond']:.3g}", f"{v['most_largest_s'] / weight:.1f}", f"{v['most_fastest']:.2f}",
+                f"{v['most_courant']:.2f}", str(result.steps), f"{result.cpu_s:.1f}",
+                f"{result.updates / max(result.cpu_s, 1e-9) / 1e6:.1f}"))  # fmt: skip
+    text = (
+        "A cohesionless column of CPDI particles lives by three things, which can be switched off: domains of limited "
+        "length, a memory of void strain, and an update of F that keeps its determinant. The table says how many "
+        "particles they touch: the largest share whose domain is cut, and at the end the share with void strain, and "
+        "without any stress, the volume of void per solid, and the extremes of det F.",
+        "A particle with void strain waits for as much compression before it carries again. Most particles of a heap "
+        "at rest do so, deep inside too: the others carry the weight and hold them apart, and the heap is larger by "
+        "it.",
+        "Crowding is the volume that particles keep, det F times what they began with, over the space in which they "
+        "are: it should be 1. Above it the heap is too small for its material, which the particles do not notice. It "
+        "grows as particles are fewer, and is 1 with 16 per cell.",
+        "Smoothing p or the deviator alone takes stresses out of the cone of friction: the largest share of particles "
+        "that the forces see outside it, in the plane, and the worst ratio among those under more than 1 % of the "
+        "largest s. The largest s is that of sand striking the floor.",
+    )
+    return Section("alive", "What keeps it alive, and what leaves the cone", text, tables=[
+        Table("Largest values over each run", head, tuple(rows), texts=("det F",))])  # fmt: skip

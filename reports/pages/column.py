@@ -1,0 +1,148 @@
+"""The page of a study of the column: runs, the paper's sentences, fronts and profiles, energies, refinement, films."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from mpm_verify.cases.column.exam import Collapse, look
+from mpm_verify.cases.column.run import ColumnResult, ColumnRun
+from mpm_verify.cases.harness.store import Store, StoreError
+from mpm_verify.reports.components.examined import Section, checks_table, render
+from mpm_verify.reports.components.page import Add
+from mpm_verify.reports.components.show import Table
+from mpm_verify.reports.components.words import DASH, percent
+from mpm_verify.reports.export.column_files import files, tables
+from mpm_verify.reports.figures import column as draw
+from mpm_verify.reports.frames import held
+from mpm_verify.reports.pages._column_more import alive, films, refinement, set_up
+
+WORDS = {True: "reproduced", False: "not reproduced", None: "cannot be told"}
+
+
+def page(folder: Path, vtk: bool = False) -> tuple[Collapse, Path]:
+    """Write the page of a study folder, its tables, and with `vtk` the files of its snapshots. Raises StoreError."""
+    collapse, store = read(folder)
+    made = render(folder, collapse.examination, lambda _, add: sections(collapse, store, add))
+    try:
+        tables(collapse, store, folder / "tables")
+        if vtk:
+            files(collapse, store, folder / "vtk")
+    except OSError as error:
+        raise StoreError(f"cannot write into {folder}: {error.strerror}; the results are kept") from error
+    return collapse, made
+
+
+def read(folder: Path) -> tuple[Collapse, Store]:
+    """What the folder holds; results of earlier sources where there are none of these. Raises StoreError."""
+    store = Store(folder, "column")
+    study = store.study()
+    return look(study, held(store, study)[0], store), store
+
+
+def sections(collapse: Collapse, store: Store, add: Add) -> Sequence[Section]:
+    """Its parts; figures only where a run came to its end."""
+    found = [summary(collapse, add)]
+    if collapse.claims:
+        found.append(said(collapse))
+    if collapse.ran:
+        found += [motion(collapse, add), energy(collapse, add), budget(collapse, add)]
+        if collapse.refined or collapse.scattered:
+            found.append(refinement(collapse, add))
+    ran = [(run, collapse.results[run.digest]) for run in collapse.study.runs if run.digest in collapse.results]
+    if ran:
+        found += [set_up(store, add, *ran[0]), films(collapse, store, add, ran), alive(collapse)]
+    return [*found, Section("checks", "Invariants, whatever the experiment says", tables=[
+        checks_table("Checks", collapse.examination.checks, group=True)])]  # fmt: skip
+
+
+def summary(collapse: Collapse, add: Add) -> Section:
+    """What each run came to."""
+    head = ("run", "front 99 %", "99.9 %", "toe", "height", "rest [√(h₀/g)]", "height falls", "area", "outcome")
+    rows = []
+    for run in collapse.study.runs:
+        result = collapse.results.get(run.digest)
+        rows.append((collapse.label(run), *numbers(run, result)))
+    notes = (
+        "Front and toe are distances from the wall in m: 99 or 99.9 % of the mass lie within the front, and the heap "
+        "that hangs together with the wall ends at its toe. The height is that of the heap next to the wall; “height "
+        "falls” is by how much it still fell in the last fifth of the time. A run rests once the kinetic energy that "
+        "the grid sees stays below a ten-thousandth of the potential energy there was; grains of the experiment came "
+        "to rest after 2.5 to 3.3 √(h₀/g). Area: that below the surface over that of the column; as the surface is "
+        "that of 99 % of the mass, by its centres, it is 1 to 4 % too low."
+    )
+    return Section("runs", "Runs", [*collapse.study.words, notes], tables=[
+        Table("What the runs came to", head, tuple(rows), texts=("outcome",))])  # fmt: skip
+
+
+def numbers(run: ColumnRun, result: ColumnResult | None) -> tuple[str, ...]:
+    """Of one run, as text."""
+    if result is None:
+        return (*[DASH] * 7, "not run")
+    if result.failure:
+        at = result.failure.step * result.dt
+        where = f"failed at {at:.3f} s (step {result.failure.step}): {result.failure.reason}"
+        return (*[DASH] * 7, where)
+    v = result.values
+    rest = f"{v['rest'] / run.tau:.2f}" if v["rest"] < float("inf") else "not yet"
+    lengths = (f"{v[name]:.3f}" for name in ("front_99", "front_999", "toe", "height"))
+    return (*lengths, rest, percent(v["creep"]), f"{v['area']:.2f}", "finished")
+
+
+def said(collapse: Collapse) -> Section:
+    """The paper's sentences."""
+    several = any(claim.runs for claim in collapse.claims)
+    head = ("the paper says", *(("runs with",) if several else ()), "here", "what was found")
+    rows = tuple(
+        (claim.says, *((claim.runs,) if several else ()), WORDS[claim.reproduced], claim.found)
+        for claim in collapse.claims
+    )
+    return Section("paper", "What the paper says, and what is found here", tables=[
+        Table("Sentences of the paper on this axis", head, rows, texts=head[1:])])  # fmt: skip
+
+
+def motion(collapse: Collapse, add: Add) -> Section:
+    """Fronts and final profiles."""
+    ran, labels = collapse.ran, [collapse.label(one.run) for one in collapse.ran]
+    return Section("motion", "Run-out", figures=[
+        (add("front", draw.fronts(ran, labels), "Front against time; its final values are in the table of runs."),
+         "Front against normalised time. Shaded: where the experiment's front rests; dashes: the times of that."),
+        (add("profiles", draw.profiles(ran, labels), "Surface of the heap at the end of each run."),
+         "The surface at the end. Shaded: front and height of the experiment; dashed: the column's free side."),
+    ])  # fmt: skip
+
+
+def budget(collapse: Collapse, add: Add) -> Section:
+    """All of the energy of the first run and of the last."""
+    figures = []
+    for place, key in {0: "first", len(collapse.ran) - 1: "last"}.items():
+        one, label = collapse.ran[place], collapse.label(collapse.ran[place].run)
+        image = add(f"budget_{key}", draw.budget(one), f"Layers of the energy budget over time, {label}.")
+        figures.append((image, f"{label[0].upper()}{label[1:]}. The line on top stays at 1 as the budget closes."))
+    return Section("budget", "Where the energy goes", figures=figures)
+
+
+def energy(collapse: Collapse, add: Add) -> Section:
+    """Energies of all."""
+    ran, labels = collapse.ran, [collapse.label(one.run) for one in collapse.ran]
+    figures = [
+        (add(name, draw.energy(ran, labels, name), f"{name.capitalize()} energy of each run over time."),
+         f"The paper's Figure 6: {name} energy.")
+        for name in ("potential", "kinetic")
+    ]  # fmt: skip
+    columns = ("potential", "kinetic", "seen by the grid", "elastic", "plastic", "damping", "walls", "transfer",
+               "convection", "residual")  # fmt: skip
+    rows = []
+    for one, label in zip(ran, labels, strict=True):
+        start, v = float(one.curves["potential"][0]), one.values
+        shares = [v[name] / start for name in ("potential", "kinetic", "on_grid", "elastic", "plastic", "damping")]
+        shares += [-v["walls"] / start, v["transfer"] / start, v["convection"] / start]
+        rows.append((label, *(f"{100 * share:.2f}" for share in shares), f"{v['unbalanced']:.1e}"))
+    text = (
+        "Kinetic energy of the particles includes velocities that the grid does not see and that move nothing; at rest "
+        "it is all that is left. Two columns are what the method loses: transfer, on the way of velocities between "
+        "particles and grid, and convection, the work of the forces at the nodes less that of the stress in the "
+        "particles. Each term is computed apart from the others; the residual is what their sum misses. Where the "
+        "gradients of weights jump, as those of classical MPM do, convection is no small share."
+    )
+    return Section("energy", "Energy", [text], figures, [
+        Table("Energies at the end, % of the initial potential energy; residual: its largest share at any time",
+              ("run", *columns), tuple(rows))])  # fmt: skip

@@ -1,0 +1,85 @@
+"""The page of `verify material`: each element test with its curves, then the errors, then the law's own checks."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from mpm_verify.cases.harness.checks import Curves, Examination
+from mpm_verify.reports.components.examined import Section, checks_table, render
+from mpm_verify.reports.components.page import Add, Image
+from mpm_verify.reports.components.show import Table
+from mpm_verify.reports.components.words import order, sci
+from mpm_verify.reports.figures import element as draw
+
+
+def page(folder: Path, examination: Examination) -> Path:
+    """Write the page; its path. Raises StoreError."""
+    return render(folder, examination, sections, ("svg", "pdf"))  # some two dozen figures: PNG takes half the time
+
+
+def sections(examination: Examination, add: Add) -> Sequence[Section]:
+    """A section a test, one for the errors, one for what is known of the law."""
+    names = [name.partition("/")[2] for name in examination.curves if name.startswith("test/")]
+    titles = dict(zip(names, examination.notes, strict=True))
+    tests = [test(examination, name, titles[name], add) for name in names]
+    rest = [group for group in examination.groups if group not in titles.values()]
+    known = [checks_table(group, [c for c in examination.checks if c.group == group]) for group in rest]
+    own = [
+        Section(
+            "law",
+            "What is known of the law",
+            ["Tables, limits and invariants, in runs of 100 steps unless said."],
+            (),
+            known,
+        )
+    ]
+    return [*tests, steps(examination, titles, add), *(own if known else [])]
+
+
+def test(examination: Examination, name: str, title: str, add: Add) -> Section:
+    """Stress path, stress and volume against strain, with the closed form below where there is one."""
+    curves = examination.curves
+    curve, exact = curves[f"test/{name}"], curves.get(f"exact/{name}")
+    shear, strength = bool(curves[f"kind/{name}"]["shear"][0]), curves.get("strength")
+    line = (float(strength["a"][0]), float(strength["b"][0])) if strength else None
+    x = "gamma" if shear or np.ptp(curve["gamma"]) > 0.5 * np.ptp(curve["ey"]) else "ey"
+    y = "tau" if shear else "t" if x == "gamma" else "sy"
+    marks: Curves = {key: curves[f"{key}/{name}"] for key in ("marks",) if f"{key}/{name}" in curves}
+    points = (
+        {key: list(zip(marks["marks"]["gamma"], marks["marks"][key], strict=True)) for key in ("t", "ev")}
+        if marks
+        else {}
+    )
+    limit = float(curves[f"limit/{name}"]["tau"][0]) if f"limit/{name}" in curves else None
+    against = draw.stress(curve, exact, x, y, points.get("t", ()) if y == "t" else (), limit)
+    images: list[tuple[Image, str]] = [
+        (add(f"{name}_path", draw.path(curve, exact, line), f"{title}: stress path."), "Stress path."),
+        (add(f"{name}_stress", against, f"{title}: stress against strain."), "Stress against strain."),
+    ]
+    if np.abs(curve["ev"]).max() > 1e-9:
+        volume = draw.volume(curve, exact, x, shear, points.get("ev", ()))
+        images.append((add(f"{name}_volume", volume, f"{title}: volume strain."), "Volume strain."))
+    checks = [check for check in examination.checks if check.group == title]
+    tables = [checks_table("Checks", checks)] if checks else []
+    return Section(name, title, examination.notes[title], images, tables)
+
+
+def steps(examination: Examination, titles: dict[str, str], add: Add) -> Section:
+    """Errors and orders in the strain step."""
+    errors = {name: examination.curves[f"errors/{name}"] for name in titles}
+    rows = tuple(
+        (titles[name], *map(sci, map(float, curve["error"])), order(float(curve["order"][0])))
+        for name, curve in errors.items()
+    )
+    counts = next(iter(errors.values()))["error"]
+    head = ("test", *(f"{2**n} times" for n in range(len(counts))), "order")
+    words = [
+        "Errors at the end of each test, of the stress over the largest stress and of the volume over the largest "
+        "strain: against the exact curve, or the test's own with 64 times the steps. Where each step is exact they "
+        "are round-off, and there is no order.",
+    ]
+    image = add("errors", draw.errors(errors, titles), "Error at the end against the number of steps.")
+    table = Table("Error at the end by number of steps", head, rows)
+    caption = "Error at the end against the number of steps."
+    return Section("steps", "Errors in the strain step", words, [(image, caption)], [table])

@@ -1,0 +1,152 @@
+"""A study folder -> report.html, figures/ and tables/; from what is stored alone, and the same bytes each time."""
+
+import re
+from pathlib import Path
+
+from matplotlib.figure import Figure
+
+from mpm_verify.cases.harness.store import Store, StoreError
+from mpm_verify.cases.harness.study import QUANTITIES, Run
+from mpm_verify.reports.components import audited, show, show_axes, show_graded, show_runs, words
+from mpm_verify.reports.components.cards import cards, summary
+from mpm_verify.reports.components.cost import compares
+from mpm_verify.reports.components.page import Add, Image, adder, template
+from mpm_verify.reports.components.show_cost import figure_rows, overview
+from mpm_verify.reports.components.stalls import looked, stalls
+from mpm_verify.reports.figures import graded
+from mpm_verify.reports.figures.convergence import convergence, methods
+from mpm_verify.reports.figures.cost import cost_figure
+from mpm_verify.reports.figures.error_field import CELLS, PPC, choose, error_field
+from mpm_verify.reports.figures.local_orders import local_order_figure
+from mpm_verify.reports.figures.particles import particles
+from mpm_verify.reports.figures.position import position
+from mpm_verify.reports.figures.time_step import time_step
+from mpm_verify.reports.frames import Record, read
+from mpm_verify.reports.tables import study as tables
+
+TIME = "Error of u in rms against the Courant number on the finest cells, both axes logarithmic; numbers in the table."
+PLACE = "Error of u in rms over the median of its level, with the particles at several places; numbers in the tables."
+COUNT = "error of u in rms against the particles per cell, a line a cell size; numbers in the table."
+
+
+def render(folder: Path, cells: int = CELLS, ppc: int = PPC, record: Record | None = None) -> Path:
+    """Write report.html, figures/*.svg|pdf|png and tables/*.csv into a study folder; the path of the page.
+
+    The error field is that of the run of each method nearest to `cells` a side and `ppc` particles per cell. `record`
+    is what the folder holds, if somebody has read it already.
+
+    Raises StoreError if the folder is no study folder, is broken, or cannot be written.
+    """
+    record = record or read(folder)
+    try:
+        for name in ("figures", "tables"):
+            (folder / name).mkdir(exist_ok=True)
+        (folder / "tables" / "now.csv").touch()  # the clock of the file system, which need not be ours
+        started = (folder / "tables" / "now.csv").stat().st_mtime_ns
+        (folder / "tables" / "now.csv").unlink()
+        tables.write(record, folder / "tables")
+        text = _page(record, folder / "figures", (cells, ppc))
+        for name in ("figures", "tables"):
+            _sweep(folder / name, started)
+        Store.write(folder / "report.html", text.encode())
+        return folder / "report.html"
+    except OSError as error:
+        raise StoreError(f"cannot write the report into {folder}: {error.strerror}; the results are kept") from error
+
+
+def _page(record: Record, folder: Path, field: tuple[int, int]) -> str:
+    """The HTML text; figures are drawn on the way."""
+    return template("report.html.j2").render(
+        record=record,
+        study=record.study,
+        summary=summary(record),
+        cards=cards(record),
+        meaning=words.MEANING,
+        sections=[_solution(record, solution, folder, field) for solution in record.solutions],
+        show=show,
+        show_runs=show_runs,
+        show_axes=show_axes,
+        stalls=stalls(record),
+        cost=_cost(record, folder),
+        overview=overview,
+        graded=show_graded if graded.found(record) else None,
+        looked=looked(record),
+        quantities=QUANTITIES,
+        words=words,
+    )
+
+
+def _solution(record: Record, solution: str, folder: Path, field: tuple[int, int]) -> dict[str, object]:
+    """Figures and blind spots of one solution; figure files carry its name where the study has several."""
+    end = "_" + re.sub(r"[^A-Za-z0-9]+", "_", solution) if len(record.solutions) > 1 else ""
+    add = adder(folder, end)
+    drawn = convergence(record, solution)
+    add("figure1", drawn["figure1"], "")
+    chosen = [choose(record, method, solution, *field) for method in methods(record)]
+    fields = [_field(record, run, add) for run in chosen if run]
+    several = particles(record, solution)
+    images = {
+        "time": _maybe(add, "time_step", time_step(record, solution), TIME),
+        "position": _maybe(add, "position", position(record, solution), PLACE),
+        "particles": [add(f"particles_{m}", drawn, f"{words.method(m)}: {COUNT}") for m, drawn in several.items()],
+    }
+    if graded.found(record):
+        alt = f"Error of u on {solution} against cost: uniform, graded and thinned layouts."
+        images["graded"] = add("graded", graded.figure(record, solution), alt)
+    return images | {
+        "name": solution,
+        "panels": [
+            add(f"figure1_{norm}", drawn[f"figure1_{norm}"], _alt(record, solution, norm))
+            for norm in ("rms", "printed")
+        ],
+        "orders": add(
+            "local_orders",
+            local_order_figure(record, solution),
+            "Local orders of u in rms; the table below holds the numbers.",
+        ),
+        "fields": [image for image in fields if image],
+        "blind": audited.blind(record, solution),
+        "seen": audited.seen(record, solution),
+    }
+
+
+def _cost(record: Record, folder: Path) -> Image | None:
+    """Error against cost, where there are methods enough to compare."""
+    if not compares(record):
+        return None
+    drawn = cost_figure(record, figure_rows(record))
+    return adder(folder, "")("cost", drawn, "Error of u, as a share of the exact rms, against updates and time.")
+
+
+def _maybe(add: Add, name: str, figure: Figure | None, alt: str) -> Image | None:
+    """An Image where there is a figure."""
+    return add(name, figure, alt) if figure else None
+
+
+def _field(record: Record, run: Run, add: Add) -> Image | None:
+    """The error field of one run; None where its particles are not stored."""
+    arrays = record.arrays(run)
+    if not ({"corners"} <= arrays.keys() or {"x", "F", "r0"} <= arrays.keys()) or "error_u" not in arrays:
+        return None
+    most = words.sci(float(arrays["error_u"].max()))
+    grid = f"{run.cells} by {run.cells} cells"
+    alt = f"Size of the error of u at the last step, {words.series(run)}, {grid}: at most {most}."
+    return add(f"error_field_{run.method}", error_field(run, arrays), alt)
+
+
+def _alt(record: Record, solution: str, norm: str) -> str:
+    """A panel of Figure 1 in words: the ends of each series and its failed runs."""
+    parts = [f"Error of u in {norm} against cell size, both axes logarithmic."]
+    for s in (s for s in record.series if s.first.solution == solution):
+        found, lost = record.errors(s, "u", norm), record.failed(s)
+        ends = [f"{words.sci(e)} at {words.cell_size(run.cells)}" for run, e in (found[:1] + found[1:][-1:])]
+        text = f"{words.series(s.first)}: {' to '.join(ends) or 'no error'}"
+        parts.append(text + (f", {words.count(len(lost), 'run')} failed." if lost else "."))
+    return " ".join(parts)
+
+
+def _sweep(folder: Path, started: float) -> None:
+    """Remove figures and tables that an earlier study left in the folder."""
+    for file in folder.iterdir():
+        if file.suffix in (".svg", ".pdf", ".png", ".csv") and file.stat().st_mtime_ns < started:
+            file.unlink()

@@ -1,0 +1,123 @@
+"""The page of `verify objectivity`: Figure 2, what it can and cannot show, orders, and rates in simple shear."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from mpm_verify.cases.harness.checks import Curves, Examination
+from mpm_verify.reports.components.examined import Section, checks_table, render
+from mpm_verify.reports.components.page import Add
+from mpm_verify.reports.components.show import Table
+from mpm_verify.reports.components.words import sci
+from mpm_verify.reports.figures import objectivity as draw
+
+KINEMATIC, RUN, ORDERS, SHEAR = (
+    "Figure 2, kinematic",
+    "Figure 2, the CPDI run",
+    "Orders in time",
+    "Rates in simple shear",
+)
+
+MISSES = "Largest miss of each reading, as a share of the stress; ∞ where the run could not go on"
+PRINTED, SMALL, REST = "block of 1 m", "block of 1 cm", "block of 1 m, not turned"
+
+
+def page(folder: Path, examination: Examination) -> Path:
+    """Write the page; its path. Raises StoreError."""
+    return render(folder, examination, sections)
+
+
+def sections(examination: Examination, add: Add) -> Sequence[Section]:
+    """Its parts; those of the CPDI runs only where all three have something to draw."""
+    whole = all(f"run/{name}" in examination.curves for name in (PRINTED, SMALL, REST))
+    runs = [figure2(examination, add), inertia(examination, add)] if whole else []
+    return [*runs, misread(examination, add), orders(examination, add), rates(examination, add)]
+
+
+def of(curves: Curves, start: str) -> Curves:
+    """The curves whose names begin with `start/`, without it."""
+    return {name[len(start) + 1 :]: curve for name, curve in curves.items() if name.startswith(start + "/")}
+
+
+def _notes(examination: Examination, group: str) -> Sequence[str]:
+    return examination.notes.get(group, ())
+
+
+def _checks(examination: Examination, group: str) -> Table:
+    return checks_table(group, [check for check in examination.checks if check.group == group])
+
+
+def figure2(examination: Examination, add: Add) -> Section:
+    """The stresses of the turned block."""
+    curves, runs = examination.curves, of(examination.curves, "run")
+    exact = curves["exact"]
+    images = [
+        (add(f"figure2_{key}", draw.stresses(exact, {name: runs[name]}, curves["wave"] if key == "printed" else None),
+             f"Mean stress of the {name} over time: lines of the closed form, marks of the CPDI run."),
+         f"{name}: lines are the closed form, marks the mean over all particles of the CPDI run.")
+        for key, name in (("printed", PRINTED), ("small", SMALL))
+    ]  # fmt: skip
+    return Section(
+        "figure2", "Figure 2: a block is loaded by gravity and turned by 90°", _notes(examination, RUN), images,
+        [_checks(examination, RUN), _checks(examination, KINEMATIC)],
+    )  # fmt: skip
+
+
+def inertia(examination: Examination, add: Add) -> Section:
+    """What is inertia and what is not."""
+    runs = of(examination.curves, "run")
+    shear = draw.co_rotated({name: runs[name] for name in (PRINTED, SMALL)})
+    away = draw.inertia({name: runs[name] for name in (PRINTED, REST, SMALL)})
+    return Section(
+        "inertia", "What the turning box feels: co-rotated stresses and inertia", _notes(examination, "Inertial share"),
+        [(add("co_rotated", shear, "Co-rotated shear stress over time, two block sizes."),
+          "Shear stress in the frame of the box: the mean over the block, and the largest of any particle."),
+         (add("inertia", away, "Co-rotated vertical stress less its static value over time, three runs."),
+          "What the block's mean vertical stress has beyond its static value. The run that is not turned feels the "
+          "inertial forces of the turning one, in a box at rest.")],
+    )  # fmt: skip
+
+
+def misread(examination: Examination, add: Add) -> Section:
+    """The negative controls on the same figure."""
+    curves = examination.curves
+    drawn = draw.misread(curves["exact"], of(curves, "figure2"))
+    rows = tuple(
+        (name.replace("_", " "), *(sci(float(curve[key][0])) for key in ("kinematic", "run", "stretched")))
+        for name, curve in of(curves, "control").items()
+    )
+    head = ("reading", "Figure 2, kinematic", "Figure 2, the CPDI run", "stretched turn, 400 steps")
+    return Section(
+        "misread", "Negative controls: readings that are wrong", _notes(examination, "Negative controls"),
+        [(add("misread", drawn, "Shear stress of the turned block by each wrong reading."),
+          "Shear stress along the motion of Figure 2 by each wrong reading, kinematic, 200 steps; the broad line is "
+          "right, and crosses are the readings that this figure cannot tell from it.")],
+        [Table(MISSES, head, rows),
+         _checks(examination, "Negative controls")],
+    )  # fmt: skip
+
+
+def orders(examination: Examination, add: Add) -> Section:
+    """Errors against the step."""
+    errors = of(examination.curves, "errors")
+    right = [name for name, curve in errors.items() if curve["right"][0]]
+    steps = next(iter(errors.values()))["steps"]
+    rows = tuple((name.replace("_", " "), *map(sci, map(float, curve["error"]))) for name, curve in errors.items())
+    return Section(
+        "orders", "Orders in time: a turn with strain", _notes(examination, ORDERS),
+        [(add("orders", draw.orders(errors, right), "Error against the number of steps."),
+          "Full lines: rates. Broken lines: misreadings; those that do not fall never converge.")],
+        [Table("Relative error at the end", ("reading", *(f"{n:g} steps" for n in steps)), rows),
+         _checks(examination, ORDERS)],
+    )  # fmt: skip
+
+
+def rates(examination: Examination, add: Add) -> Section:
+    """The rates told apart."""
+    exact, computed = of(examination.curves, "shear"), of(examination.curves, "computed")
+    images = [
+        (add(f"shear_{key}", draw.shear(exact, computed, key), f"Component {key} of the stress in simple shear."), text)
+        for key, text in (("s12", "Shear stress: lines are closed forms, marks what was computed."),
+                          ("s11", "Normal stress along the shear; σ₂₂ = −σ₁₁, and 0 for Truesdell."))
+    ]  # fmt: skip
+    return Section("rates", "Objective is not unique: four rates in simple shear to γ = 8", _notes(examination, SHEAR),
+                   images, [_checks(examination, SHEAR)])  # fmt: skip

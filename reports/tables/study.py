@@ -1,0 +1,182 @@
+"""Stored results as pandas data frames, full digits, one row a fact: what the CSV files hold and the page shows."""
+
+from dataclasses import asdict
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from mpm_verify.cases.harness.axes import crossed, particle_axes, position_axes, time_axes
+from mpm_verify.cases.harness.study import NORMS, QUANTITIES, Declared
+from mpm_verify.reports.components.cost import compares, costs
+from mpm_verify.reports.figures.local_orders import orders as pairs
+from mpm_verify.reports.frames import Record
+
+Rows = list[dict[str, Any]]
+KEY = ("method", "solution", "ppc", "quantity", "norm")
+
+
+def write(record: Record, folder: Path) -> None:
+    """One CSV file a table into `folder`; numbers read back as they are stored."""
+    for name, frame in frames(record).items():
+        frame.to_csv(folder / f"{name}.csv", index=False, lineterminator="\n")
+
+
+def frames(record: Record) -> dict[str, pd.DataFrame]:
+    """All tables by name; one without rows is none."""
+    made = {
+        "verdicts": verdicts(record),
+        "errors": errors(record),
+        "orders": orders(record),
+        "contamination": contamination(record),
+        "stalls": stalls(record),
+        "time_step": time_step(record),
+        "particles_per_cell": particles_per_cell(record),
+        "position": position(record),
+        "runs": runs(record),
+        **({"cost": costs(record)} if compares(record) else {}),
+    }
+    return {name: pd.DataFrame(rows) for name, rows in made.items() if rows}
+
+
+def roles(record: Record) -> dict[tuple[Any, ...], str]:
+    """`judged` or `shown` for each declared (method, solution, ppc, quantity, norm); what is not declared is shown."""
+    return {key(d): "judged" if d.judged else "shown" for d in record.study.declared}
+
+
+def verdicts(record: Record) -> Rows:
+    """A row a declared quantity. Where nothing was expected there is no verdict, only a slope."""
+    rows = []
+    for found in record.findings:
+        d, v, e = found.declared, found.verdict, found.declared.expectation
+        expected = None if e is None else e.kind if e.order is None else e.order
+        low, high = v.interval or (None, None)
+        rows.append(
+            dict(zip(KEY, key(d), strict=True))
+            | {"role": "judged" if d.judged else "shown", "expected": expected, "observed": v.observed}
+            | {"low": low, "high": high, "verdict": str(v.outcome) if e else None, "reason": v.reason if e else None}
+            | {"source": e.source if e else None}
+        )
+    return rows
+
+
+def errors(record: Record) -> Rows:
+    """A row a finished run and quantity, with every norm and the rms of the exact quantity."""
+    rows = []
+    for run in record.study.runs:
+        result = record.result(run)
+        for quantity in QUANTITIES if result and result.status == "finished" else ():
+            norms = {norm: record.error(run, quantity, norm) for norm in NORMS}
+            head = {"method": run.method, "solution": run.solution, "ppc": run.ppc, "cells": run.cells}
+            exact = result.scale.get(quantity) if result else None
+            where = {"offset_x": run.offset[0], "offset_y": run.offset[1]}
+            rows.append(head | {"courant": run.courant} | where | {"quantity": quantity} | norms | {"exact_rms": exact})
+    return rows
+
+
+def orders(record: Record) -> Rows:
+    """A row a pair of neighbouring cell sizes, for every series, quantity and norm."""
+    rows, role, passed = [], roles(record), crossings(record)
+    for s in record.series:
+        for quantity in QUANTITIES:
+            for norm in NORMS:
+                name = (s.first.method, s.first.solution, s.first.ppc, quantity, norm)
+                for coarse, fine, order in pairs(record, s, quantity, norm):
+                    row: dict[str, Any] = dict(zip(KEY, name, strict=True))
+                    rows.append(
+                        row
+                        | {"role": role.get(name, "shown"), "from_cells": coarse, "to_cells": fine, "order": order}
+                        | {"crossings_per_particle": passed.get((*name[:3], fine))}
+                    )
+    return rows
+
+
+def contamination(record: Record) -> Rows:
+    """Shares of the finest error that are not of the expected order, for each quantity that has such an order."""
+    rows = []
+    for found in record.findings:
+        shares = found.verdict.contamination
+        if shares is not None:
+            row: dict[str, Any] = dict(zip(KEY, key(found.declared), strict=True))
+            row |= {"role": "judged" if found.declared.judged else "shown"}
+            rows.append(row | {"lower_order": shares.lower, "floor": shares.floor, "at_most": shares.most})
+    return rows
+
+
+def runs(record: Record) -> Rows:
+    """A row a run of the study, done or not, with every parameter."""
+    rows = []
+    for run in record.study.runs:
+        row: dict[str, Any] = asdict(run) | {"status": "not run"}
+        row["offset_x"], row["offset_y"] = row.pop("offset")
+        result = record.result(run)
+        if result is not None:
+            row |= {"status": result.status, "steps": result.steps, "particles": result.particles, "dt": result.dt}
+            row |= {"wall_s": result.wall_s, "cpu_s": result.cpu_s, "peak_memory_mb": result.peak_memory_mb}
+            row |= {"crossings": result.crossings, "gap": result.gap}
+            row |= {"digest": result.digest}
+            failure = result.failure
+            if failure is not None:
+                row |= {"reason": failure.reason, "failed_step": failure.step, "failed_particle": failure.particle}
+                row |= {"failed_cell": " ".join(map(str, failure.cell)) if failure.cell else None}
+        rows.append(row)
+    return rows
+
+
+def stalls(record: Record) -> Rows:
+    """A row a stall and cause, the weightiest first."""
+    rows = []
+    for found in record.findings:
+        for cause in found.stall.causes if found.stall else ():
+            row: dict[str, Any] = dict(zip(KEY, key(found.declared), strict=True))
+            row |= {"where": found.stall.where if found.stall else None, "cause": cause.name}
+            rows.append(row | {"finding": str(cause.finding), "weight": cause.weight, "measured": cause.text})
+    return rows
+
+
+def time_step(record: Record) -> Rows:
+    """A row a time step of each series that has several, for every quantity and norm; the largest first."""
+    rows = []
+    for quantity, norm in product(QUANTITIES, NORMS):
+        for a in time_axes(record.study.runs, record.results, quantity, norm):
+            head = {"method": a.run.method, "solution": a.run.solution, "ppc": a.run.ppc, "cells": a.run.cells}
+            for courant, error, order, share in zip(a.courants, a.errors, (None, *a.orders), a.shares, strict=True):
+                row = head | {"quantity": quantity, "norm": norm, "courant": courant, "error": error}
+                rows.append(row | {"order": order, "share_of_time_step": share})
+    return rows
+
+
+def particles_per_cell(record: Record) -> Rows:
+    """A row a particle count of each method and cell size that has several, for every quantity and norm."""
+    rows = []
+    for quantity, norm in product(QUANTITIES, NORMS):
+        for a in particle_axes(record.study.runs, record.results, quantity, norm):
+            head = {"method": a.run.method, "solution": a.run.solution, "cells": a.run.cells}
+            for count, error, order in zip(a.ppc, a.errors, (None, *a.orders), strict=True):
+                row = head | {"quantity": quantity, "norm": norm, "ppc": count, "error": error}
+                rows.append(row | {"order_in_spacing": order})
+    return rows
+
+
+def position(record: Record) -> Rows:
+    """A row a cell size of each series with replicates, for every quantity and norm."""
+    rows = []
+    for quantity, norm in product(QUANTITIES, NORMS):
+        for a in position_axes(record.study.runs, record.results, quantity, norm):
+            head = {"method": a.run.method, "solution": a.run.solution, "ppc": a.run.ppc}
+            for cells, errors, (low, mid, high) in zip(a.cells, a.errors, a.ends, strict=True):
+                row = head | {"quantity": quantity, "norm": norm, "cells": cells, "runs": len(errors)}
+                rows.append(row | {"usual": errors[0], "smallest": low, "median": mid, "largest": high})
+    return rows
+
+
+def crossings(record: Record) -> dict[tuple[Any, ...], float]:
+    """Faces of cells that a particle passed, by (method, solution, ppc, cells)."""
+    every = [(run, crossed(record.result(run))) for series in record.series for run in series.runs]
+    return {(run.method, run.solution, run.ppc, run.cells): passed for run, passed in every if passed is not None}
+
+
+def key(d: Declared) -> tuple[Any, ...]:
+    """What names a declared quantity."""
+    return d.method, d.solution, d.ppc, d.quantity, d.norm

@@ -1,0 +1,90 @@
+"""`verify audit`: what a study of a solution cannot see, how strong the solution is; derives, runs nothing."""
+
+import json
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS
+from mpm_verify.verify.options.choices import choices, completion
+from mpm_verify.verify.terminal.output import printing
+
+if TYPE_CHECKING:
+    from mpm_verify.mms.audit import Audit
+
+
+def audit(
+    solution: Annotated[
+        str,
+        typer.Argument(
+            metavar="SOLUTION",
+            help=f"{choices(SOLUTIONS)}, with parameters as axis_aligned:A=0.01, or a file: path/to/own.py.",
+            autocompletion=completion(SOLUTIONS),
+        ),
+    ],
+    material: Annotated[
+        str | None,
+        typer.Option(
+            help=f"{choices(MATERIALS)}; parameters as neo_hookean:nu=0.2.",
+            autocompletion=completion(MATERIALS),
+            show_default="the solution's own",
+        ),
+    ] = None,
+    json_output: Annotated[bool, typer.Option("--json", help="One JSON document on standard output.")] = False,
+) -> None:
+    """Say what a manufactured solution cannot see, and what it can, in words and numbers."""
+    from mpm_verify.verify.conduct import usage
+
+    with usage():
+        law, result = examine(solution, material)
+    with printing():
+        if json_output:
+            document = {"solution": solution, "material": law, **asdict(result)}
+            typer.echo(json.dumps(document, indent=2, ensure_ascii=False))
+        else:
+            show(f"{solution} in {law}", result)
+
+
+def examine(specification: str, material: str | None) -> tuple[str, "Audit"]:
+    """The material and the audit; a user's file is checked before. Raises ValueError."""
+    from mpm_verify.mms.audit import audit as score
+    from mpm_verify.mms.check import check
+    from mpm_verify.mms.manufacture import manufacture
+    from mpm_verify.solver.plugins import create, is_file
+
+    solution = create(SOLUTIONS, specification)
+    name = material or solution.material
+    law = create(MATERIALS, name)
+    if is_file(specification):
+        check(solution, law)
+    return name, score(manufacture(solution, law, law.rho0), solution, law)
+
+
+def show(title: str, result: "Audit") -> None:
+    """Print what is blind, what is seen, and the numbers, as wide as the terminal is."""
+    from rich.columns import Columns
+    from rich.table import Table
+    from rich.text import Text
+
+    from mpm_verify.verify.terminal.table import Listened
+
+    out = Listened(highlight=False, soft_wrap=False)
+    if not out.is_terminal:
+        out.width = max(out.width, 100)
+    out.print(Text(f"\n{title}", "bold"))
+    for heading, style, spots in (
+        ("cannot see", "bold yellow", result.blind),
+        ("sees", "bold green", result.seen),
+    ):
+        table = Table(box=None, pad_edge=False, show_header=False, title=heading, title_justify="left")
+        table.title_style = style
+        table.add_column(no_wrap=True)
+        table.add_column()
+        for spot in spots:
+            table.add_row(spot.key, Text(spot.sentence))
+        out.print(Text())
+        out.print(table)
+    out.print(Text("\nin numbers", "bold"))
+    numbers = (f"{value:.3g} {name}" for name, value in result.numbers.items())
+    out.print(Columns(map(Text, numbers), padding=(0, 3), equal=True, column_first=True))

@@ -1,0 +1,89 @@
+"""`verify expectations`: what is registered of each method on each solution, before anything runs."""
+
+import json
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from mpm_verify.solver.plugins import METHODS, SOLUTIONS
+from mpm_verify.verify.options.choices import completion
+from mpm_verify.verify.terminal.output import printing
+
+if TYPE_CHECKING:
+    from mpm_verify.cases.judging.records import Expectation
+    from mpm_verify.cases.mms.expectations import Entry
+
+
+NOTE = """
+Orders in rms with their bands, measured (see ARCHITECTURE.md); the source is that of u. With 4 or 9 particles per
+cell u is judged, the others are shown. `stalls`: the order falls below 1.8. `diverges`: the error grows, or runs are
+lost.
+"""
+
+
+def expectations(
+    solution: Annotated[
+        str | None, typer.Option(help="Only this solution.", autocompletion=completion(SOLUTIONS))
+    ] = None,
+    method: Annotated[str | None, typer.Option(help="Only this method.", autocompletion=completion(METHODS))] = None,
+    json_output: Annotated[bool, typer.Option("--json", help="One JSON document on standard output.")] = False,
+) -> None:
+    """What is expected of each method on each solution, with its source: registered before anything runs."""
+    from mpm_verify.verify.conduct import usage
+
+    with usage():
+        from mpm_verify.cases.mms.expectations import registry
+
+        entries = [e for e in registry() if solution in (None, e.solution) and method in (None, e.method)]
+        if not entries:
+            solutions, methods = sorted({e.solution for e in registry()}), sorted({e.method for e in registry()})
+            choice = f"choose from {', '.join(solutions)} and from {', '.join(methods)}"
+            raise ValueError(f"nothing is registered there; {choice}")
+    with printing():
+        if json_output:
+            typer.echo(json.dumps([line(e) for e in entries], indent=1))
+        else:
+            show(entries)
+
+
+def line(entry: "Entry") -> dict[str, object]:
+    """An entry as data."""
+    e = entry.expectation
+    band = None if e.order is None else [e.order - e.below, e.order + e.above]
+    return {
+        "solution": entry.solution, "method": entry.method, "quantity": entry.quantity, "expected": e.kind,
+        "band": band, "source": e.source,
+    }  # fmt: skip
+
+
+def show(entries: "list[Entry]") -> None:
+    """A row a solution and method, the quantities beside each other."""
+    from rich.table import Table
+
+    from mpm_verify.verify.terminal.table import Listened
+
+    table = Table(box=None, pad_edge=False, header_style="dim")
+    for name in ("solution", "method", "u", "v", "F", "sigma", "source"):
+        table.add_column(name)
+    rows: dict[tuple[str, str], list[Entry]] = {}
+    for entry in entries:
+        rows.setdefault((entry.solution, entry.method), []).append(entry)
+    last = ""
+    for (solution, method), quantities in rows.items():
+        words = [word(e.expectation) for e in quantities]
+        table.add_row(
+            "" if solution == last else solution, method, *words, quantities[0].expectation.source.partition(";")[0]
+        )
+        last = solution
+    out = Listened(highlight=False)
+    if not out.is_terminal:
+        out.width = max(out.width, 120)
+    out.print(table)
+    out.print(NOTE)
+
+
+def word(e: "Expectation") -> str:
+    """`2 (1.8-2.3)`, `stalls` or `diverges`."""
+    if e.order is not None:
+        return f"{e.order:g} ({e.order - e.below:.2g}\N{EN DASH}{e.order + e.above:.2g})"
+    return e.kind

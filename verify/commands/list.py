@@ -1,0 +1,44 @@
+"""`verify list`: what there is to choose from. Reads file names and docstrings, imports nothing."""
+
+import ast
+
+import typer
+
+from mpm_verify.cases.harness.shipped import shipped, title
+from mpm_verify.solver.plugins import (
+    CASES,
+    KINDS,
+    LAYOUTS,
+    MATERIALS,
+    METHODS,
+    MISREADINGS,
+    RATES,
+    SMOOTHINGS,
+    SOLUTIONS,
+    TRANSFERS,
+    available,
+    path,
+)
+from mpm_verify.verify.terminal.output import printing
+
+PACKAGES = (CASES, METHODS, TRANSFERS, SMOOTHINGS, LAYOUTS, SOLUTIONS, MATERIALS, RATES, MISREADINGS)
+REMARKS = {RATES: " (of the laws in rate form)", MISREADINGS: " (negative controls, taken as a rate)"}
+
+
+def list_plugins() -> None:
+    """List cases, methods, transfers, smoothings, layouts, solutions, materials, rates, misreadings
+    and studies with a line about each."""
+    with printing():
+        for package in PACKAGES:
+            typer.echo(f"{KINDS[package]}s{REMARKS.get(package, '')}")
+            for name in available(package):
+                typer.echo(f"  {name:20}{summary(package, name)}")
+        typer.echo("studies of the column (verify sweep)")
+        for name in shipped():
+            typer.echo(f"  {name:20}{title(name)}")
+
+
+def summary(package: str, name: str) -> str:
+    """First sentence of a plug-in's docstring, without importing it."""
+    text = ast.get_docstring(ast.parse(path(package, name).read_text())) or ""
+    return text.partition("\n")[0]

@@ -1,0 +1,29 @@
+"""Names that options complete and list; from file names, so that neither Numba nor SymPy is imported."""
+
+from collections.abc import Callable
+
+import typer
+
+from mpm_verify.solver.plugins import available
+
+
+def completion(package: str) -> Callable[[str], list[str]]:
+    """Completion of plug-in names of a package."""
+
+    def complete(incomplete: str) -> list[str]:
+        return [name for name in available(package) if name.startswith(incomplete)]
+
+    return complete
+
+
+def choices(package: str) -> str:
+    """The names, for a help text."""
+    return ", ".join(available(package))
+
+
+def integers(text: str, option: str) -> tuple[int, ...]:
+    """`8,16,32` as numbers; a usage error that names the option otherwise."""
+    try:
+        return tuple(int(part) for part in text.split(","))
+    except ValueError:
+        raise typer.TyperException(f"{option} {text!r} is no list of whole numbers; write 8,16,32,64") from None

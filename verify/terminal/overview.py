@@ -1,0 +1,32 @@
+"""What a comparison of many methods prints at its end: one table, what did not pass, and the path of the report."""
+
+from pathlib import Path
+
+from rich.table import Table
+
+from mpm_verify.reports.components.cards import summary
+from mpm_verify.reports.components.show_cost import overview
+from mpm_verify.reports.frames import Record
+from mpm_verify.verify.terminal.table import Listened, sentence
+
+
+def show_overview(record: Record, report: Path) -> None:
+    """Print to standard output, as wide as the terminal is and wide enough for a line a method where there is none."""
+    out = Listened(highlight=False, soft_wrap=False)
+    found = overview(record)
+    if not out.is_terminal:
+        out.width = max(out.width, 100, 17 * len(found.head))
+    table = Table(box=None, pad_edge=False, header_style="dim")
+    for number, name in enumerate(found.head):
+        table.add_column(name, justify="left" if number == 0 else "right", overflow="fold")
+    for row in found.rows:
+        table.add_row(*row)
+    out.print(f"\n[bold]{record.study.title}[/bold]")
+    out.print(f"{found.caption}\n")
+    out.print(table)
+    for finding in record.findings:
+        if finding.declared.judged and finding.verdict.outcome != "PASS":
+            out.print(sentence(finding, several=True))
+    out.print(f"\n{summary(record)}")
+    out.print("\nVerdicts, error against cost, where orders fall and why, and how it was made:")
+    out.print(f"report: {report}", soft_wrap=True)

@@ -1,0 +1,58 @@
+"""A progress bar with the time left, on standard error, silent when that is not a terminal."""
+
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+from mpm_verify.cases.harness.runner import Result, Run
+
+
+class Silent:
+    """Hears and says nothing."""
+
+    def hear(self, news: Sequence[tuple[str, float]]) -> None:
+        """Digests of runs under way with the share that is done."""
+
+    def done(self, result: Result) -> None:
+        """A run has ended."""
+
+
+class Bar(Silent):
+    """Grows with what the runs cost, not with their number."""
+
+    def __init__(self, bar: Any, waiting: Sequence[Run], cost: Callable[[Run], float]) -> None:
+        self.bar, self.costs, self.shares = bar, {run.digest: cost(run) for run in waiting}, dict[str, float]()
+        self.task = bar.add_task("", total=sum(self.costs.values()), runs=0, of=len(waiting), last="")
+        self.finished = 0
+
+    def hear(self, news: Sequence[tuple[str, float]]) -> None:
+        """Move the bar."""
+        self.shares.update(news)
+        self.bar.update(self.task, completed=sum(self.costs[digest] * share for digest, share in self.shares.items()))
+
+    def done(self, result: Result) -> None:
+        """Name the run that has ended."""
+        self.finished += 1
+        last = f"{result.run}: {result.status}"
+        self.bar.update(self.task, runs=self.finished, last=last)
+        self.hear([(result.digest, 1.0)])
+
+
+@contextmanager
+def progress(waiting: Sequence[Run], cost: Callable[[Run], float]) -> Iterator[Silent]:
+    """A Bar on a terminal, and Silent elsewhere or where nothing is to be done."""
+    if not waiting or not sys.stderr.isatty():
+        yield Silent()
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = (
+        TextColumn("{task.percentage:>3.0f} %"),
+        BarColumn(bar_width=24),
+        TimeRemainingColumn(),
+        TextColumn("left, {task.fields[runs]} of {task.fields[of]} runs  {task.fields[last]}"),
+    )
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        yield Bar(bar, waiting, cost)

@@ -1,0 +1,107 @@
+"""What a study prints at its end: errors and local orders, the verdicts with their reasons, the path of the report."""
+
+from collections.abc import Iterator, Sequence
+from itertools import zip_longest
+from pathlib import Path
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from mpm_verify.cases.harness.axes import middle
+from mpm_verify.cases.harness.study import Declared, Study
+from mpm_verify.cases.harness.verdicts import Finding
+from mpm_verify.cases.judging.stall import Stall
+
+STYLES = {"PASS": "bold green", "FAIL": "bold red", "INCONCLUSIVE": "bold yellow", "ERROR": "bold magenta"}
+ALWAYS = ("u", "rms")
+
+
+class Listened(Console):
+    """Rich ends the program when nobody reads, with the exit code of a FAIL; this leaves it to verify.output."""
+
+    def on_broken_pipe(self) -> None:
+        """Tell the caller."""
+        raise BrokenPipeError
+
+
+def show(study: Study, found: Sequence[Finding], report: Path, console: Console | None = None) -> None:
+    """Print to standard output, as wide as the terminal is and 100 columns where there is none."""
+    out = console or Listened(highlight=False, soft_wrap=False)
+    if not out.is_terminal:
+        out.width = max(out.width, 100)
+    out.print(f"\n[bold]{study.title}[/bold]")
+    out.print(errors_table([f for f in found if f.declared.judged or (f.declared.quantity, f.declared.norm) == ALWAYS]))
+    if most := max((len(level.errors) for f in found for level in f.levels), default=1) - 1:
+        out.print(f"errors are geometric means of up to {most + 1} runs with the particles elsewhere in their cells")
+    several = len({finding.declared.solution for finding in found}) > 1
+    for finding in found:
+        if finding.declared.judged:
+            out.print(sentence(finding, several))
+    for finding in found:
+        if finding.stall:
+            out.print(stall(finding, finding.stall, several))
+    if not any(f.declared.judged for f in found):
+        out.print("INCONCLUSIVE: nothing here has a registered expectation, so nothing is judged.")
+    out.print("\nMore quantities and norms, figures, and how it was made:")
+    out.print(f"report: {report}", soft_wrap=True)
+
+
+def errors_table(found: Sequence[Finding]) -> Table:
+    """Error, local order, and faces of cells that a particle passed, at each cell count; a failed run by its reason."""
+    table = Table(box=None, pad_edge=False, header_style="dim")
+    several = len({finding.declared.solution for finding in found}) > 1
+    for name in (*(("solution",) if several else ()), "method", "per cell", "quantity", "cells"):
+        table.add_column(name, justify="right" if name in ("per cell", "cells") else "left")
+    for name in ("error", "order", "crossings"):
+        table.add_column(name, justify="right")
+    table.add_column("")
+    for finding in found:
+        for number, row in enumerate(rows(finding)):
+            solution = finding.declared.solution if number == 0 else ""
+            table.add_row(*((solution,) if several else ()), *row)
+    return table
+
+
+def rows(finding: Finding) -> Iterator[tuple[str, ...]]:
+    """A row a level; names once a block."""
+    d, orders = finding.declared, iter(finding.verdict.local_orders)
+    first, earlier = (d.method, str(d.ppc), f"{d.quantity} {d.norm}"), False
+    for level, passed in zip_longest(finding.levels, finding.crossings):
+        cells, faces = f"{1 / level.h:.0f}", "" if passed is None else f"{passed:.1f}"
+        if level.ended:
+            yield (*first, cells, "-", "", faces, level.ended)
+        else:
+            local = order(next(orders, None)) if earlier else ""
+            yield (*first, cells, f"{middle(level.errors):.3e}", local, faces, "")
+            earlier = True
+        first = ("", "", "")
+
+
+def order(local: float | None) -> str:
+    """A local order; none where an error is zero."""
+    return "" if local is None else f"{local:.2f}"
+
+
+def sentence(finding: Finding, several: bool = False) -> Text:
+    """The verdict in words."""
+    d, v = finding.declared, finding.verdict
+    stalls = d.expectation is not None and d.expectation.stall is not None
+    expected = f"order {v.expected:g}" if v.expected is not None else "a stall" if stalls else "no convergence"
+    text = Text(f"\n{v.outcome}", STYLES[v.outcome])
+    text.append(f"  {named(d, several)}, {expected} expected: {v.reason}.", "not bold default")
+    return text
+
+
+def named(declared: Declared, several: bool) -> str:
+    """What a sentence is about, with its solution if the study has several."""
+    solution = f" on {declared.solution}" if several else ""
+    return f"{declared.method}{solution}, {declared.ppc} per cell, {declared.quantity} in {declared.norm}"
+
+
+def stall(finding: Finding, found: Stall, several: bool = False) -> Text:
+    """Where the order falls and what explains it; what does not is in the report."""
+    text = Text("\nSTALL", "bold")
+    text.append(f"  {named(finding.declared, several)}: {found.where}. ", "not bold default")
+    text.append(" ".join(found.reasons), "not bold default")
+    return text
