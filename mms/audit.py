@@ -3,25 +3,25 @@
 from dataclasses import dataclass
 from typing import Any
 
+from mpm_verify.mms.blind_spots import ALWAYS, RULES, BlindSpot, Numbers
 from mpm_verify.mms.manufacture import Manufactured
 from mpm_verify.mms.measure import Law, measure
-from mpm_verify.mms.spots import ALWAYS, RULES, Numbers, Spot
 
 
 @dataclass(frozen=True)
 class Audit:
     """Spots in a fixed order, what holds for every solution last; `numbers` as mms/measure.py describes them."""
 
-    spots: tuple[Spot, ...]
+    spots: tuple[BlindSpot, ...]
     numbers: Numbers
 
     @property
-    def blind(self) -> tuple[Spot, ...]:
+    def blind(self) -> tuple[BlindSpot, ...]:
         """What a study cannot see."""
         return tuple(spot for spot in self.spots if spot.blind)
 
     @property
-    def seen(self) -> tuple[Spot, ...]:
+    def seen(self) -> tuple[BlindSpot, ...]:
         """What it can."""
         return tuple(spot for spot in self.spots if not spot.blind)
 

@@ -9,7 +9,7 @@ from typing import Any
 from mpm_verify.cases.harness.axes import NOT_RUN, level, middle, replicated
 from mpm_verify.cases.harness.series import Series, collect
 from mpm_verify.cases.harness.store import Arrays, Store
-from mpm_verify.cases.harness.study import Declared, Result, Run, Study
+from mpm_verify.cases.harness.study import QuantityPlan, Result, Run, Study
 from mpm_verify.cases.harness.verdicts import Finding, findings
 
 
@@ -36,7 +36,7 @@ class Record:
         """One a method, solution and particle count; methods as declared by the study, fewest particles first."""
         return collect(self.study.runs)
 
-    def series_of(self, declared: Declared) -> Series:
+    def series_of(self, declared: QuantityPlan) -> Series:
         """The refinement that a declared quantity is measured on."""
         return next(s for s in self.series if s.head == (declared.method, declared.solution, declared.ppc))
 

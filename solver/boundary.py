@@ -73,17 +73,17 @@ def box(grid: Grid, kind: Kind | tuple[Kind, Kind, Kind, Kind]) -> Walls:
 
 
 @kernel(nothing(F1, F2, F2, flag[:, ::1], F2, F2, flag, f8, f8, i8), parallel=True)
-def solve(mass, given, motion, held, value, rate, stops, dt, cutoff, ny):
+def solve(mass, momentum_force, velocity_acceleration, held, value, rate, stops, dt, cutoff, ny):
     """Velocity at the end of the step and acceleration at every node; m a = f, or what the wall makes of it."""
     for column in prange(mass.shape[0] // ny):
         for i in range(column * ny, (column + 1) * ny):
             inverse = 1.0 / mass[i] if mass[i] > cutoff else 0.0
             for a in range(2):
-                before = inverse * given[i, a]
-                acceleration = inverse * given[i, 2 + a]
+                before = inverse * momentum_force[i, a]
+                acceleration = inverse * momentum_force[i, 2 + a]
                 velocity = before + dt * acceleration
                 if held[i, a]:
                     velocity = value[i, a]
                     acceleration = (velocity - before) / dt if stops else rate[i, a]
-                motion[i, a] = velocity
-                motion[i, 2 + a] = acceleration
+                velocity_acceleration[i, a] = velocity
+                velocity_acceleration[i, 2 + a] = acceleration

@@ -21,7 +21,7 @@ Kind = Literal["local", "objective"]
 
 
 @kernel(f8(F1, F2, flag[:, ::1], f8, f8, f8, i8))
-def damp(mass, given, held, alpha, dt, cutoff, objective):
+def damp(mass, momentum_force, held, alpha, dt, cutoff, objective):
     """Damp the forces of nodes that no wall holds; the work of the step that the damping takes.
 
     The work is that of the mean velocity of the step, so it is what the kinetic energy of the grid lacks.
@@ -29,9 +29,9 @@ def damp(mass, given, held, alpha, dt, cutoff, objective):
     work = 0.0
     for i in range(mass.shape[0]):
         if mass[i] > cutoff:
-            f0, f1 = given[i, 2], given[i, 3]
-            v0 = given[i, 0] / mass[i]
-            v1 = given[i, 1] / mass[i]
+            f0, f1 = momentum_force[i, 2], momentum_force[i, 3]
+            v0 = momentum_force[i, 0] / mass[i]
+            v1 = momentum_force[i, 1] / mass[i]
             if held[i, 0]:
                 f0 = v0 = 0.0
             if held[i, 1]:
@@ -42,8 +42,8 @@ def damp(mass, given, held, alpha, dt, cutoff, objective):
                 d0, d1 = share * v0, share * v1
             else:
                 d0, d1 = alpha * abs(f0) * np.sign(v0), alpha * abs(f1) * np.sign(v1)
-            given[i, 2] -= d0
-            given[i, 3] -= d1
+            momentum_force[i, 2] -= d0
+            momentum_force[i, 3] -= d1
             half = 0.5 * dt / mass[i]
             work += dt * (d0 * (v0 + half * (f0 - d0)) + d1 * (v1 + half * (f1 - d1)))
     return work
@@ -67,4 +67,4 @@ class Damping:
         if not self.alpha:
             return 0.0
         objective = int(self.kind == "objective")
-        return float(damp(grid.mass, grid.given, walls.held, self.alpha, dt, cutoff, objective))
+        return float(damp(grid.mass, grid.momentum_force, walls.held, self.alpha, dt, cutoff, objective))

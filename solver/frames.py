@@ -106,7 +106,7 @@ def rotation_between(b, F0, F1):
 
 @kernel(inline=True)
 def pulled_strain(b, de, F0, F1):
-    """F0^T D F0 dt of particle b: what stands where R0 belongs in some misreadings."""
+    """F0^T D F0 dt of particle b: what stands where R0 belongs in some negative controls."""
     Lxx, Lxy, Lyx, Lyy = step_gradient(b, F0, F1)
     xx, yy, xy = pushed(
         Lxx, Lyy, 0.5 * (Lxy + Lyx), F0[4 * b], F0[4 * b + 2], F0[4 * b + 1], F0[4 * b + 3]

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Literal, Protocol, get_args
 import numpy as np
 
 from mpm_verify.solver.boundary import MASS_CUTOFF, Walls
-from mpm_verify.solver.orders import check_stress
 from mpm_verify.solver.slabs import Slabs
 from mpm_verify.solver.state import Grid, Ints, Particles
+from mpm_verify.solver.stress_update import check_stress_update
 from mpm_verify.solver.transfer import CHUNK
 from mpm_verify.solver.transfers._base import Transfer
 from mpm_verify.solver.transfers.flip import Flip
@@ -17,7 +17,7 @@ from mpm_verify.solver.weights import Basis
 
 if TYPE_CHECKING:  # their kernels take seconds to compile, and most runs have neither
     from mpm_verify.solver.damping import Damping
-    from mpm_verify.solver.diagnostics import Budget
+    from mpm_verify.solver.energy_budget import Budget
     from mpm_verify.solver.smoothing._base import Smoothing
 
 Load = Callable[[Particles, float], None]
@@ -51,7 +51,8 @@ class RunFailed(Exception):  # noqa: N818 - a failed run is a result, not an err
 
 @dataclass(frozen=True)
 class Scheme:
-    """`transfer`: see solver/transfers; `stress`: when it is updated, solver/orders.py; `staggered`: v at half steps.
+    """`transfer`: see solver/transfers; `stress`: when it is updated, solver/stress_update.py; `staggered`: v at half
+    steps.
 
     The start of a staggered run is v at t = -dt/2; without it the first order of time is lost. `deformation`: "linear",
     F <- (I + A) F with A = dt L (paper eq. (4)), or "exponential", F <- (I + A + A^2/2) F, exp(A) to second
@@ -65,7 +66,7 @@ class Scheme:
     deformation: Deformation = "linear"
 
     def __post_init__(self) -> None:
-        check_stress(self.stress)
+        check_stress_update(self.stress)
         if self.deformation not in get_args(Deformation):
             raise ValueError(f"no deformation {self.deformation!r}; choose from {', '.join(get_args(Deformation))}")
 
@@ -91,12 +92,12 @@ class Model:
     steps: int = 0
     damped: float = 0.0  # energy that damping has taken so far
     slabs: Slabs = field(default_factory=Slabs)
-    lost: Ints = field(init=False)
-    crossed: Ints = field(init=False)
+    inverted: Ints = field(init=False)
+    cell_crossings: Ints = field(init=False)
 
     def __post_init__(self) -> None:
-        self.lost = np.full(-(-len(self.particles) // CHUNK), -1)
-        self.crossed = np.zeros(len(self.lost), np.int64)
+        self.inverted = np.full(-(-len(self.particles) // CHUNK), -1)
+        self.cell_crossings = np.zeros(len(self.inverted), np.int64)
         if self.smoothing:
             self.smoothing.check(self.material)
         self.material.start(self.particles)
@@ -106,7 +107,7 @@ class Model:
     @property
     def crossings(self) -> int:
         """Faces of cells that particles have passed so far."""
-        return int(self.crossed.sum())
+        return int(self.cell_crossings.sum())
 
     @property
     def time(self) -> float:

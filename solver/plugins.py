@@ -22,7 +22,7 @@ METHODS, MATERIALS, SOLUTIONS, CASES = (
 )
 LAYOUTS = "mpm_verify.mms.layouts"
 TRANSFERS = "mpm_verify.solver.transfers"
-RATES, MISREADINGS = "mpm_verify.solver.rates", "mpm_verify.solver.misreadings"
+RATES, NEGATIVE_CONTROLS = "mpm_verify.solver.rates", "mpm_verify.solver.negative_controls"
 SMOOTHINGS = "mpm_verify.solver.smoothing"
 KINDS = {
     METHODS: "method",
@@ -32,7 +32,7 @@ KINDS = {
     TRANSFERS: "transfer",
     LAYOUTS: "layout",
     RATES: "rate",
-    MISREADINGS: "misreading",
+    NEGATIVE_CONTROLS: "negative control",
     SMOOTHINGS: "smoothing",
 }
 

@@ -29,8 +29,8 @@ class Grid:
     ny: int = field(init=False)
     origin: Floats = field(init=False)
     mass: Floats = field(init=False)
-    given: Floats = field(init=False)  # momentum, force: what the particles give
-    motion: Floats = field(init=False)  # velocity, acceleration: what they take
+    momentum_force: Floats = field(init=False)  # momentum, force: what the particles give
+    velocity_acceleration: Floats = field(init=False)  # velocity, acceleration: what they take
 
     def __post_init__(self) -> None:
         cells = np.rint((self.upper - self.lower) / self.dx).astype(int)
@@ -41,13 +41,13 @@ class Grid:
         self.nx, self.ny = (int(c) + 1 + 2 * PAD for c in cells)
         self.origin = self.lower - PAD * self.dx
         self.mass = np.zeros(self.nx * self.ny)
-        self.given = np.zeros((self.nx * self.ny, 4))
-        self.motion = np.zeros((self.nx * self.ny, 4))
+        self.momentum_force = np.zeros((self.nx * self.ny, 4))
+        self.velocity_acceleration = np.zeros((self.nx * self.ny, 4))
 
-    momentum = property(lambda self: self.given[:, :2])
-    force = property(lambda self: self.given[:, 2:])
-    velocity = property(lambda self: self.motion[:, :2])
-    acceleration = property(lambda self: self.motion[:, 2:])
+    momentum = property(lambda self: self.momentum_force[:, :2])
+    force = property(lambda self: self.momentum_force[:, 2:])
+    velocity = property(lambda self: self.velocity_acceleration[:, :2])
+    acceleration = property(lambda self: self.velocity_acceleration[:, 2:])
 
     @cached_property
     def nodes(self) -> Floats:
@@ -85,19 +85,19 @@ class Particles:
     F: Floats = field(init=False)
     sigma: Floats = field(init=False)
     carried: Floats = field(init=False)
-    B: Floats = field(init=False)
+    affine_velocity: Floats = field(init=False)
     F_old: Floats = field(init=False)
     history: Floats = field(init=False)
     work: Floats = field(init=False)
-    felt: Floats = field(init=False)
+    sigma_smoothed: Floats = field(init=False)
     id: Ints = field(init=False)
 
     def __post_init__(self) -> None:
         count = len(self.X)
         self.x, self.v, self.b = self.X.copy(), np.zeros((count, 2)), np.zeros((count, 2))
         self.F, self.sigma = np.tile(np.eye(2), (count, 1, 1)), np.zeros((count, 4))
-        self.carried, self.B, self.id = np.zeros((count, 0)), np.zeros((count, 0)), np.arange(count)
-        self.F_old, self.history, self.felt = np.zeros((count, 0)), np.zeros((count, 0)), np.zeros((count, 0))
+        self.carried, self.affine_velocity, self.id = np.zeros((count, 0)), np.zeros((count, 0)), np.arange(count)
+        self.F_old, self.history, self.sigma_smoothed = np.zeros((count, 0)), np.zeros((count, 0)), np.zeros((count, 0))
         self.work = np.zeros((count, 0))
 
     def __len__(self) -> int:

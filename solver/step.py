@@ -1,6 +1,7 @@
 """One explicit step, as in the flow chart: particles to grid, equation of motion, grid to particles, stress.
 
-When the stress is updated is the order of the step, see solver/orders.py; how velocities go between particles and grid
+When the stress is updated is the order of the step,
+see solver/stress_update.py; how velocities go between particles and grid
 is a plug-in of solver/transfers. The usual step, FLIP and update-stress-last, is one pass to the grid and one back.
 """
 
@@ -15,7 +16,9 @@ from mpm_verify.solver.state import Floats, Ints
 from mpm_verify.solver.transfer import g2p, p2g
 
 if TYPE_CHECKING:
-    from mpm_verify.solver.rate_law import RateLaw
+    from mpm_verify.solver.rate_material import RateMaterial
+
+    pass
 
 __all__ = ["Load", "Material", "Model", "RunFailed", "Scheme", "advance", "check_time_step"]
 
@@ -47,7 +50,7 @@ def stress_modified_last(model: Model) -> None:
     model.scheme.transfer.give(model, momentum)
     mapped, x = walled(model, momentum), model.particles.x.copy()
     model.scheme.transfer.filter(model, mapped)
-    advect(model, model.grid.motion, mapped)
+    advect(model, model.grid.velocity_acceleration, mapped)
     model.basis.convect(model.particles, model.grid, model.dt)
     refuse_lost(model)
     update_stress(model, x)
@@ -57,10 +60,10 @@ def stress_first(model: Model) -> None:
     """F and sigma; then all of them to the grid, v and x. Weights follow F, so those of the forces know it."""
     from mpm_verify.solver.transfers._passes import advect, walled
 
-    rest = np.zeros_like(model.grid.motion)
+    rest = np.zeros_like(model.grid.velocity_acceleration)
     particles_to_grid(model)
     model.walls.move(model.grid, model.time, model.dt)
-    before = walled(model, model.grid.given, before=True)
+    before = walled(model, model.grid.momentum_force, before=True)
     model.scheme.transfer.filter(model, before)
     advect(model, rest, before)
     refuse_lost(model)
@@ -68,7 +71,7 @@ def stress_first(model: Model) -> None:
     particles_to_grid(model)
     equation_of_motion(model)
     new_velocities(model)
-    advect(model, model.grid.motion, rest)
+    advect(model, model.grid.velocity_acceleration, rest)
     model.basis.convect(model.particles, model.grid, model.dt)
     refuse_lost(model)
 
@@ -83,15 +86,16 @@ def particles_to_grid(model: Model) -> None:
         model.smoothing.stress(model)
     for attempt in range(8):
         p2g(
-            model.basis.fill, model.basis.support, model.basis.width, s.start, s.width,
-            p.x, p.v, p.F, p.felt if p.felt.size else p.sigma, p.m, p.V0, p.b, p.domain.ravel(), g.origin, 1.0 / g.dx,
-            g.nx, g.ny, g.mass, g.given, s.strayed,
+            model.basis.fill, model.basis.support, model.basis.domain_size, s.start, s.slab_columns,
+            p.x, p.v, p.F, p.sigma_smoothed if p.sigma_smoothed.size else p.sigma, p.m, p.V0, p.b, p.domain.ravel(),
+            g.origin, 1.0 / g.dx,
+            g.nx, g.ny, g.mass, g.momentum_force, s.strayed,
         )  # fmt: skip
         if (s.strayed < 0).all():
-            model.scheme.transfer.give(model, g.given)
+            model.scheme.transfer.give(model, g.momentum_force)
             return
         refuse_outside(model, s.strayed[s.strayed >= 0])
-        s.width *= 2 if attempt else 1
+        s.slab_columns *= 2 if attempt else 1
         s.sort(g, p)
     raise RunFailed("a particle domain is as wide as the grid", model.steps)
 
@@ -99,11 +103,11 @@ def particles_to_grid(model: Model) -> None:
 def update_stress(model: Model, x: Floats) -> None:
     """The law, on the strain of the step, or on what smoothing makes of it in the cells of x, where the step began."""
     p = model.particles
-    felt = model.smoothing.strain(model, x) if model.smoothing else None
-    if felt is None:
+    F_smoothed = model.smoothing.strain(model, x) if model.smoothing else None
+    if F_smoothed is None:
         model.material.update(p, model.dt)
     else:
-        cast("RateLaw", model.material).update(p, model.dt, felt)
+        cast("RateMaterial", model.material).update(p, model.dt, F_smoothed)
 
 
 def equation_of_motion(model: Model) -> None:
@@ -114,10 +118,21 @@ def equation_of_motion(model: Model) -> None:
         model.budget.begin(model)
     if model.damping:
         model.damped += model.damping.apply(g, w, model.dt, model.cutoff)
-    solve(g.mass, g.given, g.motion, w.held, w.value, w.rate, w.stops, model.dt, model.cutoff, g.ny)
+    solve(
+        g.mass,
+        g.momentum_force,
+        g.velocity_acceleration,
+        w.held,
+        w.value,
+        w.rate,
+        w.stops,
+        model.dt,
+        model.cutoff,
+        g.ny,
+    )
     if model.budget:
         model.budget.end(model)
-    model.scheme.transfer.filter(model, g.motion)
+    model.scheme.transfer.filter(model, g.velocity_acceleration)
     model.scheme.transfer.take(model)
 
 
@@ -125,9 +140,11 @@ def grid_to_particles(model: Model) -> None:
     """v, x and F at the end of the step."""
     g, p = model.grid, model.particles
     g2p(
-        model.basis.fill, model.basis.support, model.basis.width, p.x, p.v, p.F, p.domain.ravel(), g.origin, 1.0 / g.dx,
-        g.nx, g.ny, g.motion, model.dt, model.scheme.half(model.dt), model.scheme.transfer.share, model.lost,
-        model.crossed,
+        model.basis.fill, model.basis.support, model.basis.domain_size, p.x, p.v, p.F, p.domain.ravel(), g.origin,
+        1.0 / g.dx,
+        g.nx, g.ny, g.velocity_acceleration, model.dt, model.scheme.half(model.dt), model.scheme.transfer.share,
+        model.inverted,
+        model.cell_crossings,
     )  # fmt: skip
     if model.budget:
         model.budget.took(model)
@@ -139,14 +156,14 @@ def new_velocities(model: Model) -> None:
     """v alone at the end of the step."""
     from mpm_verify.solver.transfers._passes import collect
 
-    p, share, taken = model.particles, model.scheme.transfer.share, collect(model, model.grid.motion)
+    p, share, taken = model.particles, model.scheme.transfer.share, collect(model, model.grid.velocity_acceleration)
     p.v[:] = share * (p.v + model.dt * taken[:, 2:]) + (1.0 - share) * taken[:, :2]
 
 
 def refuse_lost(model: Model) -> None:
     """Raise RunFailed for the first particle that the last pass has found without its det F."""
-    if (model.lost >= 0).any():
-        lo = int(model.lost[model.lost >= 0][0])
+    if (model.inverted >= 0).any():
+        lo = int(model.inverted[model.inverted >= 0][0])
         F = model.particles.F[lo : lo + BLOCK]
         with np.errstate(all="ignore"):  # by the kernel's formula: det() rounds in another way
             J = F[:, 0, 0] * F[:, 1, 1] - F[:, 0, 1] * F[:, 1, 0]

@@ -1,6 +1,7 @@
 """Particles to grid and back. Reads the weights table and knows no basis; compiled once, called with any fill.
 
-Particles are sorted into slabs of `width` grid columns. Slabs of one colour (even, then odd) are worked on at the same
+Particles are sorted into slabs of `slab_columns` grid columns. Slabs of one colour (even,
+then odd) are worked on at the same
 time and never touch the same node: the box given to a fill is the slab and a guard of (width - 1) // 2 columns. So
 there are no atomics and no copies, and each node's sum has one order: the same bits for any number of threads.
 
@@ -18,7 +19,7 @@ CHUNK = 128 * BLOCK  # particles a thread takes at a time on the way back
 
 
 @kernel(inline=True)
-def scatter(K, lo, hi, v, F, sigma, m, V0, b, table, node, mass, given):
+def scatter(K, lo, hi, v, F, sigma, m, V0, b, table, node, mass, momentum_force):
     """Mass, momentum and force of particles lo ... hi-1 to their nodes: f_i = -V sigma dN_i + m b N_i, V = J V0."""
     dNx = np.uint64(K * BLOCK)
     dNy = np.uint64(2 * K * BLOCK)
@@ -39,20 +40,20 @@ def scatter(K, lo, hi, v, F, sigma, m, V0, b, table, node, mass, given):
             N = table[at]
             gx = table[at + dNx]
             gy = table[at + dNy]
-            momentum_x = given[i, 0] + N * px
-            momentum_y = given[i, 1] + N * py
-            force_x = given[i, 2] + (N * bx + (sxx * gx + sxy * gy))
-            force_y = given[i, 3] + (N * by + (sxy * gx + syy * gy))
+            momentum_x = momentum_force[i, 0] + N * px
+            momentum_y = momentum_force[i, 1] + N * py
+            force_x = momentum_force[i, 2] + (N * bx + (sxx * gx + sxy * gy))
+            force_y = momentum_force[i, 3] + (N * by + (sxy * gx + syy * gy))
             mass[i] += N * mp
-            given[i, 0] = momentum_x
-            given[i, 1] = momentum_y
-            given[i, 2] = force_x
-            given[i, 3] = force_y
+            momentum_force[i, 0] = momentum_x
+            momentum_force[i, 1] = momentum_y
+            momentum_force[i, 2] = force_x
+            momentum_force[i, 3] = force_y
 
 
 @kernel(i8(Fill, i8, i8, i8, i8, F2, F2, F3, F2, F1, F1, F2, F1, F1, f8, i8, i8, f8, f8, F1, F2))
 def p2g_slab(
-    fill, K, W, start, end, x, v, F, sigma, m, V0, b, domain, origin, inv_dx, nx, ny, left, right, mass, given
+    fill, K, W, start, end, x, v, F, sigma, m, V0, b, domain, origin, inv_dx, nx, ny, left, right, mass, momentum_force
 ):  # fmt: skip
     """The particles start ... end-1; -1, or the first particle of the block that reaches out of the box."""
     xs = x.reshape(-1)
@@ -66,12 +67,33 @@ def p2g_slab(
             origin[0], origin[1], inv_dx, nx, ny, left, right, 0.0, ny - 1.0, table, node,
         ):  # fmt: skip
             return lo
-        scatter(K, lo, hi, v, F, sigma, m, V0, b, table, node, mass, given)
+        scatter(K, lo, hi, v, F, sigma, m, V0, b, table, node, mass, momentum_force)
     return -1
 
 
 @kernel(nothing(Fill, i8, i8, I1, i8, F2, F2, F3, F2, F1, F1, F2, F1, F1, f8, i8, i8, F1, F2, I1), parallel=True)
-def p2g(fill, K, W, start, width, x, v, F, sigma, m, V0, b, domain, origin, inv_dx, nx, ny, mass, given, strayed):
+def p2g(
+    fill,
+    K,
+    W,
+    start,
+    slab_columns,
+    x,
+    v,
+    F,
+    sigma,
+    m,
+    V0,
+    b,
+    domain,
+    origin,
+    inv_dx,
+    nx,
+    ny,
+    mass,
+    momentum_force,
+    strayed,
+):
     """Sums of all particles on the grid; `domain` is flat, W numbers a particle.
 
     `start` (S+1,) bounds the particles of each slab. `strayed` (S,) is -1, or the first particle of a block that
@@ -79,16 +101,16 @@ def p2g(fill, K, W, start, width, x, v, F, sigma, m, V0, b, domain, origin, inv_
     """
     slabs = start.shape[0] - 1
     mass[:] = 0.0
-    given[:] = 0.0
-    guard = (width - 1) // 2
+    momentum_force[:] = 0.0
+    guard = (slab_columns - 1) // 2
     for colour in range(2):
         for pair in prange((slabs - colour + 1) // 2):
             s = 2 * pair + colour
-            left = max(0.0, float(s * width - guard))
-            right = min(nx - 1.0, float((s + 1) * width + guard))
+            left = max(0.0, float(s * slab_columns - guard))
+            right = min(nx - 1.0, float((s + 1) * slab_columns + guard))
             strayed[s] = p2g_slab(
                 fill, K, W, start[s], start[s + 1], x, v, F, sigma, m, V0, b, domain, origin, inv_dx, nx, ny,
-                left, right, mass, given,
+                left, right, mass, momentum_force,
             )  # fmt: skip
 
 
@@ -110,7 +132,7 @@ def deform(p, F, Lxx, Lxy, Lyx, Lyy, dt, half):
 
 
 @kernel(inline=True)
-def gather(K, lo, hi, x, v, F, motion, dt, half, flip, table, node):
+def gather(K, lo, hi, x, v, F, velocity_acceleration, dt, half, flip, table, node):
     """New velocity, place and F of particles lo ... hi-1."""
     dNx = np.uint64(K * BLOCK)
     dNy = np.uint64(2 * K * BLOCK)
@@ -124,12 +146,12 @@ def gather(K, lo, hi, x, v, F, motion, dt, half, flip, table, node):
             N = table[at]
             gx = table[at + dNx]
             gy = table[at + dNy]
-            ux = motion[i, 0]
-            uy = motion[i, 1]
+            ux = velocity_acceleration[i, 0]
+            uy = velocity_acceleration[i, 1]
             vx += N * ux
             vy += N * uy
-            ax += N * motion[i, 2]
-            ay += N * motion[i, 3]
+            ax += N * velocity_acceleration[i, 2]
+            ay += N * velocity_acceleration[i, 3]
             Lxx += ux * gx
             Lxy += ux * gy
             Lyx += uy * gx
@@ -160,7 +182,26 @@ def cells_of(x, ox, oy, inv_dx, cells):
 
 
 @kernel(i8(Fill, i8, i8, i8, i8, F2, F2, F3, F1, F1, f8, i8, i8, F2, f8, f8, f8, I1))
-def g2p_chunk(fill, K, W, start, end, x, v, F, domain, origin, inv_dx, nx, ny, motion, dt, half, flip, crossed):
+def g2p_chunk(
+    fill,
+    K,
+    W,
+    start,
+    end,
+    x,
+    v,
+    F,
+    domain,
+    origin,
+    inv_dx,
+    nx,
+    ny,
+    velocity_acceleration,
+    dt,
+    half,
+    flip,
+    cell_crossings,
+):
     """The particles start ... end-1; -1, or the first particle of the first block in which one has lost its det F.
 
     Adds to crossed (1,) the faces of cells that they passed.
@@ -171,7 +212,7 @@ def g2p_chunk(fill, K, W, start, end, x, v, F, domain, origin, inv_dx, nx, ny, m
     node = np.empty(K * BLOCK, np.int64)
     before = np.zeros(2 * BLOCK)
     after = np.zeros(2 * BLOCK)
-    lost = -1
+    inverted = -1
     for lo in range(start, end, BLOCK):
         hi = min(lo + BLOCK, end)
         fill(
@@ -179,28 +220,31 @@ def g2p_chunk(fill, K, W, start, end, x, v, F, domain, origin, inv_dx, nx, ny, m
             origin[0], origin[1], inv_dx, nx, ny, 0.0, nx - 1.0, 0.0, ny - 1.0, table, node,
         )  # fmt: skip
         cells_of(xs[2 * lo : 2 * hi], origin[0], origin[1], inv_dx, before)
-        gather(K, lo, hi, x, v, F, motion, dt, half, flip, table, node)
+        gather(K, lo, hi, x, v, F, velocity_acceleration, dt, half, flip, table, node)
         cells_of(xs[2 * lo : 2 * hi], origin[0], origin[1], inv_dx, after)
         passed = 0
         for b in range(hi - lo):  # beyond, in the last block, are the cells of the block before
             passed += int(before[b] != after[b]) + int(before[BLOCK + b] != after[BLOCK + b])
-        crossed[0] += passed
-        if lost < 0 and not invertible(Fs[4 * lo : 4 * hi]):
-            lost = lo
-    return lost
+        cell_crossings[0] += passed
+        if inverted < 0 and not invertible(Fs[4 * lo : 4 * hi]):
+            inverted = lo
+    return inverted
 
 
 @kernel(nothing(Fill, i8, i8, F2, F2, F3, F1, F1, f8, i8, i8, F2, f8, f8, f8, I1, I1), parallel=True)
-def g2p(fill, K, W, x, v, F, domain, origin, inv_dx, nx, ny, motion, dt, half, flip, lost, crossed):
+def g2p(
+    fill, K, W, x, v, F, domain, origin, inv_dx, nx, ny, velocity_acceleration, dt, half, flip, inverted, cell_crossings
+):
     """FLIP velocity with a share (1 - flip) of PIC, place, and F of all particles.
 
-    `lost` (chunks,) is -1, or the first particle of a block in which one has lost its det F; `crossed` (chunks,) counts
+    `inverted` (chunks,) is -1,
+    or the first particle of a block in which one has lost its det F; `cell_crossings` (chunks,) counts
     on: the faces of cells that particles passed.
     """
-    for c in prange(lost.shape[0]):
+    for c in prange(inverted.shape[0]):
         start = c * CHUNK
         end = min(x.shape[0], start + CHUNK)
-        lost[c] = g2p_chunk(
-            fill, K, W, start, end, x, v, F, domain, origin, inv_dx, nx, ny, motion, dt, half, flip,
-            crossed[c : c + 1],
+        inverted[c] = g2p_chunk(
+            fill, K, W, start, end, x, v, F, domain, origin, inv_dx, nx, ny, velocity_acceleration, dt, half, flip,
+            cell_crossings[c : c + 1],
         )  # fmt: skip

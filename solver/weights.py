@@ -40,7 +40,7 @@ class Basis:
     support: ClassVar[int]  # K
     order: ClassVar[float]  # expected order of the displacement; source in the docstring
     fill: ClassVar[Callable[..., bool]]  # a kernel of signature FILL
-    width: ClassVar[int] = 0  # W
+    domain_size: ClassVar[int] = 0  # W
 
     def domain(self, layout: Layout, place: Place) -> Floats:
         """What the basis keeps of the domains, (P,W); `place` takes reference places (n,2) to those at the start."""

@@ -6,12 +6,12 @@ import numpy as np
 
 from mpm_verify.cases.objectivity.kinematic import Path
 from mpm_verify.cases.objectivity.turning_block import turn
-from mpm_verify.solver.plugins import MATERIALS, MISREADINGS, RATES, available, create, load
-from mpm_verify.solver.rate_law import RateLaw
+from mpm_verify.solver.plugins import MATERIALS, NEGATIVE_CONTROLS, RATES, available, create, load
+from mpm_verify.solver.rate_material import RateMaterial
 from mpm_verify.solver.state import Floats, Particles
 
-RIGHT, WRONG = available(RATES), available(MISREADINGS)
-LAWS = [name for name in available(MATERIALS) if issubclass(load(MATERIALS, name), RateLaw)]
+RIGHT, WRONG = available(RATES), available(NEGATIVE_CONTROLS)
+LAWS = [name for name in available(MATERIALS) if issubclass(load(MATERIALS, name), RateMaterial)]
 CONFINED = np.array([-100.0, -120.0, -110.0, 10.0])  # xx, yy, zz, xy
 PLANE = np.array([1.0, 1.0, 0.0, 2.0])  # the norm of the tensor in the plane
 

@@ -8,9 +8,9 @@ import numpy as np
 
 from mpm_verify.cases.harness import study as contract
 from mpm_verify.cases.harness.store import Arrays, Store
-from mpm_verify.cases.harness.study import NORMS, QUANTITIES, Declared, Failure, Result, Run, Study
+from mpm_verify.cases.harness.study import NORMS, QUANTITIES, Failure, QuantityPlan, Result, Run, Study
 from mpm_verify.cases.judging.order import Expectation
-from mpm_verify.mms.spots import ALWAYS, Spot
+from mpm_verify.mms.blind_spots import ALWAYS, BlindSpot
 
 CELLS = (8, 16, 32, 64, 128)
 U_RMS: dict[tuple[str, int], tuple[float, ...]] = {  # the runs behind the last number failed
@@ -24,8 +24,8 @@ U_RMS: dict[tuple[str, int], tuple[float, ...]] = {  # the runs behind the last 
 SIZE = {"u": 1.0, "v": 320.0, "F": 11.0, "sigma": 9.0e4}  # errors of the others, in errors of u
 SCALE = {"u": 0.025, "v": 7.9, "F": 1.02, "sigma": 1700.0}
 AUDIT = (
-    Spot("shear", "F is diagonal everywhere. Seen by clamped_shear.", True),
-    Spot("volume", "det F runs from 0.5 to 1.7.", False),
+    BlindSpot("shear", "F is diagonal everywhere. Seen by clamped_shear.", True),
+    BlindSpot("volume", "det F runs from 0.5 to 1.7.", False),
     *ALWAYS,
 )
 GAP: dict[str, float | None] = {"cpdi": 0.1, "mpm": None}  # at 8 cells
@@ -66,7 +66,7 @@ def _no_sources() -> str:
     return "synthetic"
 
 
-def _declared(methods: tuple[str, ...]) -> tuple[Declared, ...]:
+def _declared(methods: tuple[str, ...]) -> tuple[QuantityPlan, ...]:
     found = []
     for method, ppc in U_RMS:
         for quantity in QUANTITIES if method in methods else ():
@@ -74,7 +74,9 @@ def _declared(methods: tuple[str, ...]) -> tuple[Declared, ...]:
                 judged = quantity == "u" and norm == "rms" and ppc in HALF_PPC
                 expected = {"cpdi": SECOND if ppc == 4 else Expectation(2.0, source=SECOND.source), "mpm": NONE}[method]
                 known = quantity == "u" and norm == "rms"
-                found.append(Declared(method, "axis_aligned", ppc, quantity, norm, judged, expected if known else None))
+                found.append(
+                    QuantityPlan(method, "axis_aligned", ppc, quantity, norm, judged, expected if known else None)
+                )
     return tuple(found)
 
 

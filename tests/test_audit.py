@@ -12,9 +12,9 @@ import test_defects as defects
 from pydantic import TypeAdapter
 
 from mpm_verify.mms.audit import ALWAYS, Audit, audit
+from mpm_verify.mms.blind_spots import RULES, SEEN_BY
 from mpm_verify.mms.manufacture import Manufactured, manufacture
 from mpm_verify.mms.measure import boundary
-from mpm_verify.mms.spots import RULES, SEEN_BY
 from mpm_verify.solver.layout import annulus, rectangle
 from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS, available, create
 from mpm_verify.solver.state import Floats

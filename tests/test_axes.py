@@ -17,7 +17,7 @@ from mpm_verify.cases.harness.axes import crossed, level, middle, particle_axes,
 from mpm_verify.cases.harness.runner import InProcess, pending, run_study
 from mpm_verify.cases.harness.series import collect
 from mpm_verify.cases.harness.store import Store
-from mpm_verify.cases.harness.study import NORMS, QUANTITIES, Declared, Failure, Result, Run, Study
+from mpm_verify.cases.harness.study import NORMS, QUANTITIES, Failure, QuantityPlan, Result, Run, Study
 from mpm_verify.cases.harness.verdicts import findings, refinement
 from mpm_verify.cases.judging.order import Expectation, Outcome
 from mpm_verify.cases.mms.sweep import MOST, Sweep, build, offsets
@@ -101,7 +101,7 @@ def test_series_keep_the_axes_apart() -> None:
         assert all(runs[0] == run for runs, run in zip(s.replicates, s.runs, strict=True))
         assert [(r.cells, r.courant) for r in s.times] == [(16, 0.4), (16, 0.2), (16, 0.1)]
         assert s.halved == s.times[1]
-    declared = Declared("mpm", "axis_aligned", 9, "u", "rms", False, None)
+    declared = QuantityPlan("mpm", "axis_aligned", 9, "u", "rms", False, None)
     assert refinement(declared, study.runs) == list(series[1].runs)
 
 
@@ -187,7 +187,7 @@ def test_replicates_are_one_level_of_the_verdict() -> None:
     runs, known = scattered()
     half = replace(BASE, cells=64, courant=0.2)
     known[half.digest] = result(half, 64**-2.0)
-    declared = Declared("cpdi", "axis_aligned", 4, "u", "rms", True, Expectation(2.0))
+    declared = QuantityPlan("cpdi", "axis_aligned", 4, "u", "rms", True, Expectation(2.0))
     (found,) = findings(Study("t", "t", "c", (*runs, half), (declared,)), known)
     assert [len(each.errors) for each in found.levels] == [4] * 4
     assert found.levels[0].errors[0] == 1 / 64  # the usual place first: the run with half the time step is there too
@@ -323,7 +323,7 @@ def test_seven_methods_stay_readable(tmp_path: Path) -> None:
 def rendered(folder: Path, runs: tuple[Run, ...], error: Errors) -> str:
     """The page of a study with these runs."""
     heads = dict.fromkeys((run.method, run.ppc) for run in runs)
-    declared = tuple(Declared(m, "axis_aligned", p, "u", "rms", False, None) for m, p in heads)
+    declared = tuple(QuantityPlan(m, "axis_aligned", p, "u", "rms", False, None) for m, p in heads)
     study = Study("t", "t", "verify mms", runs, declared)
     store = Store(folder)
     store.create(study)

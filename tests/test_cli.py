@@ -276,7 +276,7 @@ def test_list_names_every_plugin(verify: Verify) -> None:
         "mpm_verify.solver.smoothing",
         "mpm_verify.mms.layouts",
         "mpm_verify.solver.rates",
-        "mpm_verify.solver.misreadings",
+        "mpm_verify.solver.negative_controls",
     )
     plugins = {name for package in others for name in available(package)}
     assert listed == {*METHODS, *SOLUTIONS, *MATERIALS, *plugins, *shipped()}

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mpm_verify.cases.column.claims import Claim, Ran, beyond, claims, families, told
+from mpm_verify.cases.column.claims import Claim, FinishedRun, beyond, claims, families, told
 from mpm_verify.cases.column.experiment import experiment
 from mpm_verify.cases.column.run import ColumnRun
 
@@ -17,7 +17,7 @@ USUAL = ColumnRun()
 def ran(
     front: float = 0.9, height: float = 0.15, kinetic: float = 100.0, potential: float = 80.0,
     creep: float = 0.01, crowding: float = 1.1, **run: Any,
-) -> Ran:  # fmt: skip
+) -> FinishedRun:  # fmt: skip
     """A run that comes to these, in curves of a simple shape."""
     curves = {
         "t": T,
@@ -25,12 +25,12 @@ def ran(
         "potential": np.maximum(480 - (480 - potential) * T / 0.8, potential),
         "on_grid": kinetic * np.exp(-(((T - 0.3) / 0.1) ** 2)),
     }
-    return Ran(
+    return FinishedRun(
         replace(USUAL, **run), {"front_99": front, "height": height, "creep": creep, "crowding": crowding}, curves
     )
 
 
-def said(family: list[Ran], axis: str) -> dict[str, Claim]:
+def said(family: list[FinishedRun], axis: str) -> dict[str, Claim]:
     """Claims by their first five words."""
     return {" ".join(claim.says.split()[:5]): claim for claim in claims(family, [axis])}
 

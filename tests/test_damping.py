@@ -68,9 +68,9 @@ def test_oscillator(alpha: float) -> None:
     grid.mass[10] = mass
     x, v, taken, tops = 1.0, 0.0, 0.0, [1.0]
     for _ in range(round(4 * 2 * np.pi / np.sqrt(k / mass) / dt * 1.01)):
-        grid.given[10] = mass * v, 0.0, -k * x, 0.0
+        grid.momentum_force[10] = mass * v, 0.0, -k * x, 0.0
         taken += Damping(alpha).apply(grid, walls, dt, 1e-12)
-        last, v = v, v + dt * grid.given[10, 2] / mass
+        last, v = v, v + dt * grid.momentum_force[10, 2] / mass
         x += dt * v
         if last > 0 >= v:
             tops.append(x)
@@ -90,7 +90,7 @@ def test_axes_matter_to_the_local_kind_alone() -> None:
         damping, forces = Damping(0.3, kind), []
         for Q in (np.eye(2), turn):
             grid.mass[10] = 1.5
-            grid.given[10] = np.r_[Q @ [1.5, 0.0], Q @ [2.0, -3.0]]
+            grid.momentum_force[10] = np.r_[Q @ [1.5, 0.0], Q @ [2.0, -3.0]]
             damping.apply(grid, box(grid, "free"), 1e-3, 1e-12)
             forces.append(Q.T @ grid.force[10])
         away[kind] = np.abs(forces[0] - forces[1]).max()
@@ -101,9 +101,9 @@ def test_axes_matter_to_the_local_kind_alone() -> None:
 def test_walls_and_rest_are_left_alone() -> None:
     grid = Grid(1.0, np.zeros(2), np.ones(2))
     grid.mass[:] = 1.0
-    grid.given[:] = [0.0, 0.0, 1.0, 2.0]
+    grid.momentum_force[:] = [0.0, 0.0, 1.0, 2.0]
     assert Damping(0.5).apply(grid, box(grid, "free"), 1e-3, 1e-12) == 0.0  # at rest
-    grid.given[:] = [1.0, 1.0, 1.0, 2.0]
+    grid.momentum_force[:] = [1.0, 1.0, 1.0, 2.0]
     walls = box(grid, "roller")
     Damping(0.5).apply(grid, walls, 1e-3, 1e-12)
     assert (grid.force[walls.held] == np.tile([1.0, 2.0], (len(walls.held), 1))[walls.held]).all()

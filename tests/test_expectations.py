@@ -93,14 +93,14 @@ def test_an_own_solution_has_the_order_of_its_file(tmp_path: Path) -> None:
 
 def test_only_u_in_rms_is_judged() -> None:
     study = build(Sweep(cells=(8, 16, 32, 64), ppc=(4,)), "verify", "x")
-    assert [(d.quantity, d.norm) for d in study.declared if d.judged] == [("u", "rms")]
-    assert {d.quantity for d in study.declared if d.expectation} == set(QUANTITIES)
+    assert [(d.quantity, d.norm) for d in study.plans if d.judged] == [("u", "rms")]
+    assert {d.quantity for d in study.plans if d.expectation} == set(QUANTITIES)
     assert [r.courant for r in study.runs].count(0.2) == 1  # half the time step, for what is judged
 
 
 def test_the_study_of_all_methods_judges_each_on_each_solution() -> None:
     study = build_methods(everything(), "verify methods", "methods")
-    judged = [(d.method, d.solution) for d in study.declared if d.judged]
+    judged = [(d.method, d.solution) for d in study.plans if d.judged]
     assert len(judged) == len(set(judged)) == len(available(METHODS)) * len(LEVELS)
     assert len({run.digest for run in study.runs}) == len(study.runs)
     assert all(len(cells) >= 4 for cells in (*LEVELS.values(), *QUICK.values()))

@@ -123,8 +123,8 @@ def test_a_ring_is_refused_before_anything_runs() -> None:
 def test_a_sweep_names_its_layout_and_expects_nothing_of_it() -> None:
     study = build(Sweep(layout="graded:contrast=2.0"), "", "")
     assert {each.layout for each in study.runs} == {"graded"}  # the usual contrast
-    assert not any(d.judged or d.expectation for d in study.declared)
-    assert any(d.judged for d in build(Sweep(), "", "").declared)
+    assert not any(d.judged or d.expectation for d in study.plans)
+    assert any(d.judged for d in build(Sweep(), "", "").plan)
     assert Sweep(layout="thinned").name.endswith("layout-thinned")
 
 
@@ -248,7 +248,7 @@ def test_the_study_grades_only_what_stays_packed() -> None:
         *((k, n) for k in ("graded", "thinned") for n in (4, 9)),
     }
     assert len(study.runs) == 7 * 2
-    assert not any(d.judged for d in study.declared)
+    assert not any(d.judged for d in study.plans)
     with pytest.raises(ValueError, match="a contrast of 4 needs 16 particles per cell or more"):
         build_graded(Plan(contrast=4), "", "graded")
     assert len({replace(r, layout="").digest for r in study.runs}) < len(study.runs)

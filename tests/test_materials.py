@@ -14,7 +14,7 @@ from mpm_verify.cases.mms.sweep import Sweep
 from mpm_verify.mms.manufacture import manufacture
 from mpm_verify.solver.elastic import Elastic
 from mpm_verify.solver.plugins import available, create, load
-from mpm_verify.solver.rate_law import RateLaw
+from mpm_verify.solver.rate_material import RateMaterial
 from mpm_verify.solver.state import Floats, Particles
 from mpm_verify.verify.main import main
 
@@ -65,7 +65,7 @@ def stress(law: Any, F: Floats) -> Floats:
     """What the solver computes for F (P,2,2)."""
     count = len(F)
     p = Particles(np.zeros((count, 2)), np.ones(count), np.ones(count), np.zeros((count, 0)))
-    if not isinstance(law, RateLaw):  # a function of F does not read what it writes
+    if not isinstance(law, RateMaterial):  # a function of F does not read what it writes
         p.sigma[:] = np.nan
     law.start(p)
     p.F = np.ascontiguousarray(F)
@@ -196,7 +196,7 @@ def test_parameters_are_named(name: str) -> None:
 def test_wave_speed_is_finite_and_of_no_rate(name: str) -> None:
     c = create("mpm_verify.solver.material", name).wave_speed()
     assert 0 < c < np.inf
-    if issubclass(load("mpm_verify.solver.material", name), RateLaw):
+    if issubclass(load("mpm_verify.solver.material", name), RateMaterial):
         assert create("mpm_verify.solver.material", f"{name}:rate=jaumann").wave_speed() == c
 
 

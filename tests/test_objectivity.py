@@ -19,10 +19,10 @@ from mpm_verify.cases.objectivity.exam import examine
 from mpm_verify.cases.objectivity.turning_block import Block, turn
 from mpm_verify.cases.objectivity.words import words
 from mpm_verify.reports.pages.objectivity import page
-from mpm_verify.solver.plugins import MISREADINGS, RATES, available
+from mpm_verify.solver.plugins import NEGATIVE_CONTROLS, RATES, available
 
 COARSE = Block(cells=4)
-WRONG, RIGHT = available(MISREADINGS), available(RATES)
+WRONG, RIGHT = available(NEGATIVE_CONTROLS), available(RATES)
 UNSEEN = {"strain_start", "strain_end", "strain_fixed"}  # by Figure 2
 
 

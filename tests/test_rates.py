@@ -1,6 +1,7 @@
 """Objective rates and what they are mistaken for: orders, closed forms, other observers, and rotations of any size.
 
-Who sees which misreading, as the share of the stress by which it misses (measured, hypoelastic; at least 0.1 is seen):
+Who sees which negative control, as the share of the stress by which it misses (measured,
+hypoelastic; at least 0.1 is seen):
 
                     constant      one step of    going on,   strained turn,  strained turn,
                     rotation      1 rad          4 steps     4 steps         400 steps
@@ -47,7 +48,7 @@ from mpm_verify.cases.objectivity.rates import STEPS, order_errors, simple_shear
 from mpm_verify.cases.objectivity.turning_block import turn
 from mpm_verify.solver.material.hypoelastic import Hypoelastic
 from mpm_verify.solver.plugins import RATES, create
-from mpm_verify.solver.rate_law import objective
+from mpm_verify.solver.rate_material import objective
 from mpm_verify.solver.rates.logarithmic import bend
 from mpm_verify.solver.state import Floats
 

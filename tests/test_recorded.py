@@ -33,7 +33,7 @@ def test_all_methods_are_of_second_order_while_nothing_crosses(solution: str, tm
     store = Store(tmp_path)
     store.create(study)
     results = run_study(study, store, InProcess(), 1)
-    found = {f.declared.method: str(f.verdict.outcome) for f in findings(study, results) if f.declared.judged}
+    found = {f.plan.method: str(f.verdict.outcome) for f in findings(study, results) if f.plan.judged}
     assert found == dict.fromkeys(available(METHODS), "PASS")
     assert all(result.crossings == 0 for result in results.values())
 

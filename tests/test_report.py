@@ -15,9 +15,9 @@ import pytest
 
 from mpm_verify.cases.harness import study as contract
 from mpm_verify.cases.harness.store import Store, StoreError
-from mpm_verify.cases.harness.study import Declared, Failure, Run
+from mpm_verify.cases.harness.study import Failure, QuantityPlan, Run
 from mpm_verify.cases.judging.order import Expectation
-from mpm_verify.mms.spots import ALWAYS
+from mpm_verify.mms.blind_spots import ALWAYS
 from mpm_verify.reports.components import audited, words
 from mpm_verify.reports.components.cards import cards
 from mpm_verify.reports.figures.error_field import choose, domains
@@ -123,8 +123,8 @@ def test_no_divergence_is_claimed_of_a_method_that_converges(tmp_path: Path) -> 
     fixtures.make(tmp_path, ("cpdi",))
     store = Store(tmp_path)
     study = store.study()
-    expected = tuple(replace(d, expectation=Expectation(None)) if d.judged else d for d in study.declared)
-    store.create(replace(study, declared=expected))
+    expected = tuple(replace(d, expectation=Expectation(None)) if d.judged else d for d in study.plans)
+    store.create(replace(study, plans=expected))
     said = text(render(tmp_path).read_text())
     assert "FAIL" in said
     assert "Converges, and that was not expected" in said
@@ -203,8 +203,8 @@ def test_two_solutions_are_told_apart(tmp_path: Path) -> None:
     store = Store(fixtures.make(tmp_path, ("cpdi",)))
     study, other = store.study(), "clamped_shear:G=0.05"
     runs = tuple(replace(run, solution=other) for run in study.runs)
-    declared = tuple(replace(d, solution=other) for d in study.declared)
-    store.create(replace(study, runs=study.runs + runs, declared=study.declared + declared))
+    declared = tuple(replace(d, solution=other) for d in study.plans)
+    store.create(replace(study, runs=study.runs + runs, plans=study.plans + declared))
     for old, new in zip(study.runs, runs, strict=True):
         if (result := store.get(old.digest)) is not None:
             store.put(replace(result, run=new, digest=new.digest), store.arrays(old.digest))
@@ -286,7 +286,7 @@ def test_numbers_are_written_alike(value: float | None, written: str) -> None:
 
 
 def test_words_of_expectations_and_failures() -> None:
-    expected = Declared("cpdi", "affine", 4, "u", "rms", True, Expectation(2.0))
+    expected = QuantityPlan("cpdi", "affine", 4, "u", "rms", True, Expectation(2.0))
     assert words.expected(expected) == "2.00 (1.80 to 2.30)"
     assert words.expected(replace(expected, expectation=Expectation(None))) == "diverges"
     assert words.series(Run("mpm", "affine", "neo_hookean", 8, 9, 0.4)) == "MPM, 9 per cell"

@@ -13,7 +13,7 @@ import pytest
 
 from mpm_verify.cases.harness import study as contract
 from mpm_verify.cases.harness.store import Store, StoreError
-from mpm_verify.cases.harness.study import Declared, Failure, Result, Run, Study, sources_digest
+from mpm_verify.cases.harness.study import Failure, QuantityPlan, Result, Run, Study, sources_digest
 from mpm_verify.cases.judging.order import Expectation
 
 RUN = Run("cpdi", "axis_aligned", "neo_hookean", 8, 4, 0.4)
@@ -65,7 +65,7 @@ def test_numbers_come_back_to_the_last_bit(store: Store) -> None:
 
 def test_study_round_trip(tmp_path: Path) -> None:
     expectations = (Expectation(2.0, source="theory", constant=1e-5, constant_h=1 / 128), Expectation(None), None)
-    declared = tuple(Declared("cpdi", "affine", 4, "u", "rms", e is not None, e) for e in expectations)
+    declared = tuple(QuantityPlan("cpdi", "affine", 4, "u", "rms", e is not None, e) for e in expectations)
     study = Study("mms", "title", "verify mms", (RUN, replace(RUN, force=True)), declared)
     Store(tmp_path).create(study)
     assert Store(tmp_path).study() == study

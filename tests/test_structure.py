@@ -18,7 +18,7 @@ PLUGINS = {
     "mpm_verify.solver.basis": {"support", "order", "fill"},
     "mpm_verify.solver.material": {"start", "update", "wave_speed"},
     "mpm_verify.solver.rates": {"unrotate", "rotate", "order"},
-    "mpm_verify.solver.misreadings": {"unrotate", "rotate", "order"},
+    "mpm_verify.solver.negative_controls": {"unrotate", "rotate", "order"},
     "mpm_verify.solver.smoothing": {"of", "where", "stress", "strain", "check"},
     "mpm_verify.solver.transfers": {"share", "start", "give", "filter", "take"},
     "mpm_verify.mms.solutions": {"displacement", "boundary", "lower", "upper", "duration"},
@@ -112,7 +112,7 @@ def one_signature(kernel: Any, signature: Any) -> None:
 
 FRAMES = [
     (package, name)
-    for package in ("mpm_verify.solver.rates", "mpm_verify.solver.misreadings")
+    for package in ("mpm_verify.solver.rates", "mpm_verify.solver.negative_controls")
     for name in available(package)
 ]
 
@@ -132,14 +132,14 @@ def test_a_rate_has_the_two_signatures(package: str, name: str) -> None:
 def test_a_law_is_of_one_of_two_forms(name: str) -> None:
     """A function of F with its energy, or in rate form with one kernel of the one signature."""
     from mpm_verify.solver.objective import RESPOND
-    from mpm_verify.solver.rate_law import RateLaw
+    from mpm_verify.solver.rate_material import RateMaterial
 
     law: Any = load("mpm_verify.solver.material", name)
-    assert issubclass(law, RateLaw) != hasattr(law, "energy")
-    if issubclass(law, RateLaw):
+    assert issubclass(law, RateMaterial) != hasattr(law, "energy")
+    if issubclass(law, RateMaterial):
         one_signature(law.respond, RESPOND)
         assert law().initial(np.zeros((3, 4))).shape == (3, len(law.memory))
-        assert law().rate in available("mpm_verify.solver.rates")  # no misreading by default
+        assert law().rate in available("mpm_verify.solver.rates")  # no negative control by default
 
 
 @pytest.mark.parametrize("name", available("mpm_verify.cases"))
@@ -152,7 +152,7 @@ def test_a_case_can_be_executed(name: str) -> None:
 def test_names_of_plugins() -> None:
     assert camel("neo_hookean") == "NeoHookean"
     assert {"mpm", "cpdi"} <= set(available("mpm_verify.solver.basis"))
-    assert not set(available("mpm_verify.solver.rates")) & set(available("mpm_verify.solver.misreadings")), (
+    assert not set(available("mpm_verify.solver.rates")) & set(available("mpm_verify.solver.negative_controls")), (
         "RateLaw looks for both"
     )
     assert not [name for package in PLUGINS for name in available(package) if name.startswith("_")]

@@ -141,7 +141,7 @@ class Plain:
     def step(self) -> dict[str, Floats]:
         """Takes the model's particles through one step and returns x, v, F, sigma and B."""
         m, p, dt = self.m, self.p, self.m.dt
-        B = p.B.reshape(-1, 2, 2) if self.name == "apic" else None
+        B = p.affine_velocity.reshape(-1, 2, 2) if self.name == "apic" else None
         self.look()
         if self.order == "usf":
             p.F[:] = self.strained(p.F, self.full(self.lumped(p.v, self.before, B)))
@@ -214,7 +214,7 @@ def spinning(name: str, transfer: str, order: str = "usl") -> Model:
 def angular_momentum(m: Model) -> float:
     """sum m (x_p x v_p), with the affine part B_yx - B_xy where a transfer keeps one."""
     p = m.particles
-    own = p.B[:, 2] - p.B[:, 1] if p.B.shape[1] else 0.0
+    own = p.affine_velocity[:, 2] - p.affine_velocity[:, 1] if p.affine_velocity.shape[1] else 0.0
     return float(np.sum(p.m * (p.x[:, 0] * p.v[:, 1] - p.x[:, 1] * p.v[:, 0] + own)))
 
 
@@ -384,7 +384,7 @@ def wave(order: str, steps: int, staggered: bool, name: str = "mpm") -> Floats:
     if staggered:
         particles_to_grid(m)
         equation_of_motion(m)
-        p.v -= m.dt / 2 * _passes.collect(m, grid.motion)[:, 2:]
+        p.v -= m.dt / 2 * _passes.collect(m, grid.velocity_acceleration)[:, 2:]
     go(m, steps)
     assert m.crossings == 0
     x: Floats = p.in_initial_order("x")
@@ -446,7 +446,7 @@ def test_apic_takes_the_gradient_of_an_affine_field(name: str) -> None:
     m.grid.velocity[:] = A0 + m.grid.nodes @ L0.T
     m.scheme.transfer.take(m)
     B = L0 @ np.einsum("pi,pia,pib->pab", N, d, d)
-    np.testing.assert_allclose(m.particles.B.reshape(-1, 2, 2), B, atol=1e-15, rtol=0)
+    np.testing.assert_allclose(m.particles.affine_velocity.reshape(-1, 2, 2), B, atol=1e-15, rtol=0)
 
 
 @pytest.mark.parametrize("off", [0.0, 1e-14, 1e-9, 1e-4])
@@ -455,12 +455,12 @@ def test_apic_on_the_edges_of_cells(off: float) -> None:
     m = model("mpm", "apic")
     p = m.particles
     p.x[:] = np.round(p.x / DX) * DX + off * DX
-    p.v[:], p.B[:] = 1.0, 1e-3
+    p.v[:], p.affine_velocity[:] = 1.0, 1e-3
     before = p.m @ p.v
     particles_to_grid(m)
     np.testing.assert_allclose(m.grid.momentum.sum(axis=0), before, rtol=1e-12)
     assert np.abs(m.grid.momentum).max() < 2 * p.m.max() * 4 * (1 + 1e-3 / DX)
-    p.B[:] = np.inf if off == 0.0 else p.B
+    p.affine_velocity[:] = np.inf if off == 0.0 else p.affine_velocity
     assert np.isfinite(m.grid.momentum).all()
 
 
@@ -500,9 +500,9 @@ def test_single_passes_give_the_bits_of_the_fused_one(transfer: str) -> None:
         equation_of_motion(m)
     grid_to_particles(fused)
     p, share = single.particles, single.scheme.transfer.share
-    taken = _passes.collect(single, single.grid.motion)
+    taken = _passes.collect(single, single.grid.velocity_acceleration)
     p.v[:] = share * (p.v + single.dt * taken[:, 2:]) + (1 - share) * taken[:, :2]
-    _passes.advect(single, single.grid.motion, single.grid.motion)
+    _passes.advect(single, single.grid.velocity_acceleration, single.grid.velocity_acceleration)
     for array in ("x", "v", "F"):
         np.testing.assert_array_equal(getattr(p, array), getattr(fused.particles, array))
     assert single.crossings == fused.crossings > 0
@@ -573,7 +573,7 @@ def test_cells_passed(transfer: str, order: str) -> None:
 
 def test_apic_without_a_gradient_starts_from_rest() -> None:
     m = model("cpdi", "apic")
-    assert m.particles.B.shape == (len(m.particles), 4)
-    assert not m.particles.B.any()
+    assert m.particles.affine_velocity.shape == (len(m.particles), 4)
+    assert not m.particles.affine_velocity.any()
     assert Apic.share == 0.0
-    assert model("cpdi", "flip").particles.B.shape == (400, 0)
+    assert model("cpdi", "flip").particles.affine_velocity.shape == (400, 0)

@@ -6,7 +6,7 @@ from dataclasses import replace
 import fixtures_study as fixtures
 import pytest
 
-from mpm_verify.cases.harness.study import QUANTITIES, Declared, Failure, Result, Run, Study
+from mpm_verify.cases.harness.study import QUANTITIES, Failure, QuantityPlan, Result, Run, Study
 from mpm_verify.cases.harness.verdicts import Finding, exit_code, findings, refinement
 from mpm_verify.cases.judging.order import Expectation, Outcome, Verdict
 from mpm_verify.cases.mms.expectations import later_with_9, registered, registry
@@ -14,7 +14,7 @@ from mpm_verify.cases.mms.sweep import SOLUTIONS, Sweep, build, canonical
 from mpm_verify.solver.plugins import TRANSFERS, available
 
 PASS, FAIL, INCONCLUSIVE, ERROR = Outcome
-JUDGED = Declared("cpdi", "axis_aligned", 4, "u", "rms", True, Expectation(2.0))
+JUDGED = QuantityPlan("cpdi", "axis_aligned", 4, "u", "rms", True, Expectation(2.0))
 SHOWN = replace(JUDGED, judged=False, expectation=None)
 LEVELS = tuple(Run("cpdi", "axis_aligned", "neo_hookean", cells, 4, 0.4) for cells in (8, 16, 32, 64, 128))
 HALVED = replace(LEVELS[-1], courant=0.2)
@@ -26,7 +26,7 @@ def sources() -> Iterator[None]:
         yield
 
 
-def finding(outcome: Outcome, declared: Declared = JUDGED) -> Finding:
+def finding(outcome: Outcome, declared: QuantityPlan = JUDGED) -> Finding:
     return Finding(declared, Verdict(outcome, 2.0, None, None, "because"), (), None)
 
 
@@ -34,7 +34,7 @@ def made(runs: tuple[Run, ...]) -> dict[str, Result]:
     return {run.digest: fixtures._result(run) for run in runs}
 
 
-def study(runs: tuple[Run, ...], *declared: Declared) -> Study:
+def study(runs: tuple[Run, ...], *declared: QuantityPlan) -> Study:
     return Study("mms", "title", "verify mms", runs, declared)
 
 
@@ -151,7 +151,7 @@ def test_incomplete_store() -> None:
 
 
 @pytest.mark.parametrize("declared", [JUDGED, SHOWN])
-def test_empty_store_is_no_crash(declared: Declared) -> None:
+def test_empty_store_is_no_crash(declared: QuantityPlan) -> None:
     (found,) = findings(study(LEVELS, declared), {})
     assert found.verdict.outcome is ERROR
     assert found.finest is None
@@ -169,7 +169,7 @@ def test_expected_non_convergence_is_met_by_failed_runs() -> None:
 def test_findings_keep_the_order_of_the_declarations() -> None:
     declared = (SHOWN, JUDGED, replace(SHOWN, norm="max"))
     found = findings(study((*LEVELS, HALVED), *declared), made((*LEVELS, HALVED)))
-    assert [f.declared for f in found] == list(declared)
+    assert [f.plan for f in found] == list(declared)
 
 
 # ---- what the MMS study declares
@@ -188,7 +188,7 @@ REGISTERED = sorted({(entry.method, entry.solution) for entry in registry() if e
 
 @pytest.mark.parametrize(("method", "solution"), REGISTERED)
 def test_judged_is_u_in_rms_with_4_and_9_per_cell(method: str, solution: str) -> None:
-    declared = built(methods=(method,), solution=solution).declared
+    declared = built(methods=(method,), solution=solution).plan
     judged = {(d.quantity, d.norm, d.ppc) for d in declared if d.judged}
     counts = (4,) if later_with_9(method, solution, registered(solution, method, "u")) else (4, 9)
     assert judged == {("u", "rms", ppc) for ppc in counts}
@@ -200,14 +200,14 @@ def test_judged_is_u_in_rms_with_4_and_9_per_cell(method: str, solution: str) ->
 
 @pytest.mark.parametrize("changes", [{"solution": "axis_aligned:A=0.01"}, {"material": "neo_hookean:nu=0.2"}])
 def test_an_order_is_expected_whatever_the_parameters(changes: dict[str, str]) -> None:
-    judged = [d.expectation for d in built(**changes).declared if d.judged]
+    judged = [d.expectation for d in built(**changes).plan if d.judged]
     assert [(e.order, e.constant) for e in judged if e] == [(2.0, None)] * 2  # the recorded error holds for defaults
-    assert not any(d.judged for d in built(methods=("mpm",), **changes).declared)  # small amplitudes do converge
+    assert not any(d.judged for d in built(methods=("mpm",), **changes).plan)  # small amplitudes do converge
 
 
 def test_nothing_is_expected_of_linear_elasticity() -> None:
     study = built(material="linear_elastic")
-    assert not any(d.judged for d in study.declared)
+    assert not any(d.judged for d in study.plans)
     assert {run.courant for run in study.runs} == {0.4}
 
 
@@ -216,13 +216,13 @@ def test_nothing_is_expected_of_linear_elasticity() -> None:
 )
 def test_nothing_is_expected_of_another_transfer_or_stress_order(changes: dict[str, str]) -> None:
     study = built(**changes)
-    assert not any(d.judged for d in study.declared)
+    assert not any(d.judged for d in study.plans)
     assert {getattr(run, key) for run in study.runs for key in changes} == set(changes.values())
 
 
 def test_a_transfer_has_one_name() -> None:
     assert built(transfer="flip:share=1").runs == built().runs
-    assert any(d.judged for d in built(transfer="flip:share=1.0").declared)
+    assert any(d.judged for d in built(transfer="flip:share=1.0").plan)
     assert canonical(TRANSFERS, "fmpm:order=3.0") == "fmpm:order=3"
     assert canonical(TRANSFERS, "fmpm:order=2") == "fmpm"
 
@@ -261,7 +261,7 @@ def test_canonical_keeps_every_digit() -> None:
 
 
 def test_defaults_in_other_words_are_judged() -> None:
-    assert any(d.judged for d in built(solution="axis_aligned:phase=0").declared)
+    assert any(d.judged for d in built(solution="axis_aligned:phase=0").plan)
 
 
 @pytest.mark.parametrize(

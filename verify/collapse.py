@@ -11,7 +11,7 @@ from mpm_verify.verify.options.common import check_count
 from mpm_verify.verify.terminal.output import printing
 
 if TYPE_CHECKING:
-    from mpm_verify.cases.column.exam import Collapse
+    from mpm_verify.cases.column.exam import ColumnAnalysis
     from mpm_verify.cases.column.run import ColumnStudy
 
 VERSION = 1
@@ -55,7 +55,7 @@ def conduct(study: "ColumnStudy", folder: Path, jobs: int | None, threads: int, 
     return CODES[collapse.examination.outcome]
 
 
-def document(collapse: "Collapse", made: Path) -> str:
+def document(collapse: "ColumnAnalysis", made: Path) -> str:
     """One JSON document: runs with their numbers, the paper's sentences, the checks; null for what is not finite."""
     from mpm_verify.verify.examine import finite, told
 
@@ -82,7 +82,7 @@ def document(collapse: "Collapse", made: Path) -> str:
     return json.dumps(content, indent=1, allow_nan=False, ensure_ascii=False)
 
 
-def show(collapse: "Collapse", made: Path) -> None:
+def show(collapse: "ColumnAnalysis", made: Path) -> None:
     """Print the runs, the paper's sentences, and the checks."""
     from rich.table import Table
     from rich.text import Text

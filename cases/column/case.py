@@ -30,10 +30,10 @@ from mpm_verify.cases.harness.memory import forget_peak, peak_memory
 from mpm_verify.cases.harness.study import Failure
 from mpm_verify.solver.boundary import Walls, box, moving
 from mpm_verify.solver.damping import Damping
-from mpm_verify.solver.diagnostics import Budget, kinetic
+from mpm_verify.solver.energy_budget import Budget, kinetic
 from mpm_verify.solver.layout import rectangle
 from mpm_verify.solver.plugins import MATERIALS, METHODS, SMOOTHINGS, TRANSFERS, create
-from mpm_verify.solver.rate_law import RateLaw
+from mpm_verify.solver.rate_material import RateMaterial
 from mpm_verify.solver.state import Floats, Grid, Particles
 from mpm_verify.solver.step import Model, RunFailed, Scheme, advance, check_time_step
 
@@ -94,7 +94,7 @@ def check(run: ColumnRun) -> None:
 def law_of(run: ColumnRun) -> Any:
     """The law, with void-strain memory where it has one. Raises ValueError for one that the column cannot have."""
     law = create(MATERIALS, run.law)
-    if not isinstance(law, RateLaw):
+    if not isinstance(law, RateMaterial):
         raise ValueError(f"the column must have a law in rate form, with a memory of its path, not {run.law}")
     if run.void and hasattr(law, "void") and not law.c:  # type: ignore[attr-defined]
         law = replace(law, void=1.0)  # type: ignore[call-arg]
@@ -211,11 +211,11 @@ class Kept:
 
 def fields(model: Model) -> dict[str, Any]:
     """Fields of the particles in the initial order, float32: x, v, F, sigma, m, J, corners, the law's memory by name,
-    and where smoothing gives the forces another stress, that as sigma_felt."""
+    and where smoothing gives the forces another stress, that as sigma_smoothed."""
     p = model.particles
     found = {name: getattr(p, name) for name in ("x", "v", "F", "sigma", "m", "J")}
-    if p.felt.size:
-        found["sigma_felt"] = p.felt
+    if p.sigma_smoothed.size:
+        found["sigma_smoothed"] = p.sigma_smoothed
     corners = model.basis.corners(p.x, p.F, p.domain, model.grid.dx)
     if corners is not None:
         found["corners"] = corners

@@ -12,7 +12,7 @@ its momentum is not counted. All these are told, and not judged. How many runs c
 from collections.abc import Sequence
 from math import sqrt
 
-from mpm_verify.cases.column.claims import Ran, shared
+from mpm_verify.cases.column.claims import FinishedRun, shared
 from mpm_verify.cases.column.run import AT_REST, ColumnRun, ColumnStudy
 from mpm_verify.cases.harness.checks import Check, Way
 
@@ -25,11 +25,11 @@ ADJOINT = ("none", "volumetric", "deviatoric", "full")  # rates and stresses by 
 FILTERS = "fmpm"  # transfer whose walls are not counted
 
 
-def checks(study: ColumnStudy, ran: Sequence[Ran]) -> list[Check]:
+def checks(study: ColumnStudy, ran: Sequence[FinishedRun]) -> list[Check]:
     """Of the runs that came to their end."""
     smooth = [one for one in ran if holds_work(one.run)]
     counted = [one for one in ran if name_of(one.run.transfer) != FILTERS]
-    asked: list[tuple[str, Sequence[Ran], list[float], float, str]] = [
+    asked: list[tuple[str, Sequence[FinishedRun], list[float], float, str]] = [
         (f"energy budget, largest residual {SHARE}", ran, [one.values["unbalanced"] for one in ran], BUDGET,
          "every term is measured apart"),
         (f"work of the law less that of its forces, {SHARE}", smooth, [one.values["misworked"] for one in smooth],
@@ -70,6 +70,6 @@ def named(study: ColumnStudy, run: ColumnRun) -> str:
     return f" ({shared(run, study.axes)})" if len(study.runs) > 1 and study.axes else ""
 
 
-def lost(one: Ran) -> float:
+def lost(one: FinishedRun) -> float:
     """The momentum that nothing has taken."""
     return one.values["most_momentum_lost"] / one.values["mass"] / sqrt(2 * one.run.g * one.run.height)

@@ -26,7 +26,7 @@ NEAR = 0.10  # of the experiment's band
 
 
 @dataclass(frozen=True)
-class Ran:
+class FinishedRun:
     """A run that came to its end, its numbers and its curves."""
 
     run: ColumnRun
@@ -54,7 +54,7 @@ class Claim:
     runs: str = ""  # what the runs share, where a study has several families of them
 
 
-def claims(ran: Sequence[Ran], axes: Sequence[str]) -> list[Claim]:
+def claims(ran: Sequence[FinishedRun], axes: Sequence[str]) -> list[Claim]:
     """Of every axis that the paper speaks of, one list a family of runs."""
     found = []
     for axis in axes:
@@ -66,9 +66,9 @@ def claims(ran: Sequence[Ran], axes: Sequence[str]) -> list[Claim]:
     return found
 
 
-def families(ran: Sequence[Ran], axis: str) -> list[list[Ran]]:
+def families(ran: Sequence[FinishedRun], axis: str) -> list[list[FinishedRun]]:
     """Runs that differ in one axis alone, in the order of the study."""
-    found: dict[ColumnRun, list[Ran]] = {}
+    found: dict[ColumnRun, list[FinishedRun]] = {}
     if not ran:
         return []
     usual: Any = {axis: getattr(ran[0].run, axis)}
@@ -115,17 +115,17 @@ def beyond(value: float, band: tuple[float, float]) -> float:
     return value / high - 1 if value > high else value / low - 1 if value < low else 0.0
 
 
-def fronts(family: Sequence[Ran], axis: str) -> str:
+def fronts(family: Sequence[FinishedRun], axis: str) -> str:
     """`0.902 m with 1 per cell, ...`."""
     return listed(family, axis, lambda one: one.front)
 
 
-def heights(family: Sequence[Ran], axis: str) -> str:
+def heights(family: Sequence[FinishedRun], axis: str) -> str:
     """`0.08 m with 1 per cell, ...`."""
     return listed(family, axis, lambda one: one.height)
 
 
-def listed(family: Sequence[Ran], axis: str, length: Callable[[Ran], float]) -> str:
+def listed(family: Sequence[FinishedRun], axis: str, length: Callable[[FinishedRun], float]) -> str:
     """A length of each run, with what the run has on the axis."""
     return ", ".join(f"{length(one):.3f} m with {told(axis, getattr(one.run, axis))}" for one in family)
 
@@ -135,7 +135,7 @@ def band(limits: tuple[float, float]) -> str:
     return f"{limits[0]:.3f} to {limits[1]:.3f} m"
 
 
-def of_particles(family: Sequence[Ran], known: Experiment) -> list[Claim]:
+def of_particles(family: Sequence[FinishedRun], known: Experiment) -> list[Claim]:
     """Figure 4."""
     few = sorted(family, key=lambda one: one.run.ppc)
     first, last = few[0], few[-1]
@@ -154,7 +154,7 @@ def of_particles(family: Sequence[Ran], known: Experiment) -> list[Claim]:
     ]  # fmt: skip
 
 
-def crowds(family: Sequence[Ran]) -> str:
+def crowds(family: Sequence[FinishedRun]) -> str:
     """Which runs have a heap too small for its material, as a sentence; nothing where there are none."""
     crowded = [one for one in family if one.values["crowding"] > CROWDED]
     if not crowded:
@@ -163,7 +163,7 @@ def crowds(family: Sequence[Ran]) -> str:
     return f" But of the space they are in particles keep {named} as their volume: those runs are weak evidence."
 
 
-def settled(family: Sequence[Ran], found: bool) -> bool | None:
+def settled(family: Sequence[FinishedRun], found: bool) -> bool | None:
     """Whether heights rise; None where one may still fall below the one before."""
     falls = [
         later.height - earlier.height < later.values["creep"] * later.height for earlier, later in pairwise(family)
@@ -171,7 +171,7 @@ def settled(family: Sequence[Ran], found: bool) -> bool | None:
     return None if found and any(falls) else found
 
 
-def falling(family: Sequence[Ran]) -> str:
+def falling(family: Sequence[FinishedRun]) -> str:
     """How much heights still change, as a sentence."""
     most = max(family, key=lambda one: abs(one.values["creep"]))
     return f" In the last fifth of the time they still fell by up to {100 * most.values['creep']:.1f} %."
@@ -183,7 +183,7 @@ def off(value: float, limits: tuple[float, float]) -> str:
     return "in the band" if not away else f"{100 * abs(away):.0f} % {'above' if away > 0 else 'below'} the band"
 
 
-def of_damping(family: Sequence[Ran], known: Experiment) -> list[Claim]:
+def of_damping(family: Sequence[FinishedRun], known: Experiment) -> list[Claim]:
     """Figures 5 and 6."""
     rising = sorted(family, key=lambda one: one.run.damping)
     first, last = rising[0], rising[-1]
@@ -207,13 +207,13 @@ def of_damping(family: Sequence[Ran], known: Experiment) -> list[Claim]:
     ]  # fmt: skip
 
 
-def largest_change(one: Ran, other: Ran, name: str) -> float:
+def largest_change(one: FinishedRun, other: FinishedRun, name: str) -> float:
     """The largest difference of two curves at equal times."""
     t = one.curves["t"]
     return float(np.abs(one.curves[name] - np.interp(t, other.curves["t"], other.curves[name])).max())
 
 
-def of_smoothing(family: Sequence[Ran], known: Experiment) -> list[Claim]:
+def of_smoothing(family: Sequence[FinishedRun], known: Experiment) -> list[Claim]:
     """Figure 7."""
     by = {one.run.smoothing.partition(":")[0]: one for one in reversed(family)}
     plain, found = by.get("none"), []
@@ -237,7 +237,7 @@ def of_smoothing(family: Sequence[Ran], known: Experiment) -> list[Claim]:
     return found
 
 
-def of_law(family: Sequence[Ran], known: Experiment) -> list[Claim]:
+def of_law(family: Sequence[FinishedRun], known: Experiment) -> list[Claim]:
     """Figure 8."""
     by = {one.run.law.partition(":")[0]: one for one in reversed(family)}
     if not {"mohr_coulomb", "ubcsand"} <= by.keys():
@@ -267,7 +267,7 @@ def of_law(family: Sequence[Ran], known: Experiment) -> list[Claim]:
     ]  # fmt: skip
 
 
-Speaker = Callable[[Sequence[Ran], Experiment], list[Claim]]
+Speaker = Callable[[Sequence[FinishedRun], Experiment], list[Claim]]
 SPEAK: dict[str, Speaker] = {
     "ppc": of_particles,
     "damping": of_damping,

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from mpm_verify.cases.column.checks import checks
-from mpm_verify.cases.column.claims import CROWDED, Claim, Ran, claims, shared, told
+from mpm_verify.cases.column.claims import CROWDED, Claim, FinishedRun, claims, shared, told
 from mpm_verify.cases.column.experiment import UNCERTAIN, experiment
 from mpm_verify.cases.column.refined import Refined, Scattered, refinements, scatter
 from mpm_verify.cases.column.run import ColumnResult, ColumnRun, ColumnStudy
@@ -16,12 +16,12 @@ from mpm_verify.cases.harness.store import Store
 
 
 @dataclass(frozen=True)
-class Collapse:
+class ColumnAnalysis:
     """What a study holds: its results by digest, those that came to their end with their curves, and what they say."""
 
     study: ColumnStudy
     results: Mapping[str, ColumnResult]
-    ran: tuple[Ran, ...]
+    ran: tuple[FinishedRun, ...]
     claims: tuple[Claim, ...]
     refined: tuple[Refined, ...]
     scattered: tuple[Scattered, ...]
@@ -32,10 +32,10 @@ class Collapse:
         return shared(run, self.study.axes or ("method", "cells", "ppc", "law"))
 
 
-def look(study: ColumnStudy, results: Mapping[str, ColumnResult], store: Store) -> Collapse:
+def look(study: ColumnStudy, results: Mapping[str, ColumnResult], store: Store) -> ColumnAnalysis:
     """Judge what is stored."""
     ended = [(run, results[run.digest]) for run in study.runs if run.digest in results]
-    ran = tuple(Ran(run, one.values, curves(store, one)) for run, one in ended if one.status == "finished")
+    ran = tuple(FinishedRun(run, one.values, curves(store, one)) for run, one in ended if one.status == "finished")
     said = tuple(claims(ran, study.axes))
     first = next(iter(results.values()), None)
     examination = Examination(
@@ -43,7 +43,7 @@ def look(study: ColumnStudy, results: Mapping[str, ColumnResult], store: Store) 
         tuple(checks(study, ran)), parameters(study, first), {}, first.environment if first else {},
     )  # fmt: skip
     refined, scattered = tuple(refinements(ran, study.axes)), tuple(scatter(ran, study.axes))
-    return Collapse(study, results, ran, said, refined, scattered, examination)
+    return ColumnAnalysis(study, results, ran, said, refined, scattered, examination)
 
 
 def curves(store: Store, result: ColumnResult) -> dict[str, Any]:
@@ -52,7 +52,7 @@ def curves(store: Store, result: ColumnResult) -> dict[str, Any]:
     return {name[6:]: np.asarray(values, float) for name, values in arrays.items() if name.startswith("curve_")}
 
 
-def lead(study: ColumnStudy, ran: Sequence[Ran], said: Sequence[Claim], done: int) -> str:
+def lead(study: ColumnStudy, ran: Sequence[FinishedRun], said: Sequence[Claim], done: int) -> str:
     """What came out, in words."""
     words = [f"{len(ran)} of {len(study.runs)} runs came to their end."]
     if done - len(ran):

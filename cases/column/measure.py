@@ -15,7 +15,7 @@ import numpy as np
 from scipy import ndimage
 
 from mpm_verify.cases.column.run import AT_REST, ColumnRun
-from mpm_verify.solver.diagnostics import residual
+from mpm_verify.solver.energy_budget import residual
 from mpm_verify.solver.state import Floats
 from mpm_verify.solver.step import Model
 
@@ -160,7 +160,7 @@ def strength(model: Model) -> dict[str, float]:
     yield by t and s alone; zero of others. `idle`: the share without stress. `largest_s`: the largest s.
     """
     p, law = model.particles, model.material
-    sigma = p.felt if p.felt.size else p.sigma
+    sigma = p.sigma_smoothed if p.sigma_smoothed.size else p.sigma
     s, t = -(sigma[:, 0] + sigma[:, 1]) / 2, np.hypot((sigma[:, 0] - sigma[:, 1]) / 2, sigma[:, 3])
     found = {
         "largest_s": float(s.max()),

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mpm_verify.cases.column.claims import Ran, families, shared, told
+from mpm_verify.cases.column.claims import FinishedRun, families, shared, told
 from mpm_verify.cases.judging.richardson import Extrapolation, extrapolate
 
 REFINES = {"cells": lambda run: 1 / run.cells, "courant": lambda run: run.courant, "ppc": lambda run: run.ppc**-0.5}
@@ -35,7 +35,7 @@ class Scattered:
     reach: float
 
 
-def refinements(ran: Sequence[Ran], axes: Sequence[str]) -> list[Refined]:
+def refinements(ran: Sequence[FinishedRun], axes: Sequence[str]) -> list[Refined]:
     """Wherever a study has three levels or more."""
     found = []
     for axis in axes:
@@ -50,7 +50,7 @@ def refinements(ran: Sequence[Ran], axes: Sequence[str]) -> list[Refined]:
     return found
 
 
-def scatter(ran: Sequence[Ran], axes: Sequence[str]) -> list[Scattered]:
+def scatter(ran: Sequence[FinishedRun], axes: Sequence[str]) -> list[Scattered]:
     """Wherever a study has three places or more."""
     found = []
     for family in families(ran, "offset") if "offset" in axes else ():

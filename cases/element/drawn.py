@@ -12,18 +12,20 @@ from mpm_verify.solver.material.mohr_coulomb import MohrCoulomb
 from mpm_verify.solver.material.ubcsand import Ubcsand
 
 if TYPE_CHECKING:
-    from mpm_verify.cases.element.exam import Studied
+    from mpm_verify.cases.element.exam import ElementStudy
+
+    pass
 
 MARKED = 5e3  # Pa, the confining stress of the reference tables
 DRAWN = 400  # points of a curve that are kept
 
 
-def drawn(law: Any, studies: "list[Studied]", stress: float) -> Curves:
+def drawn(law: Any, studies: "list[ElementStudy]", stress: float) -> Curves:
     """Everything that the page draws."""
     return curves(studies) | strength(law) | limit(law, stress) | marks(law, studies, stress)
 
 
-def curves(studies: "list[Studied]") -> Curves:
+def curves(studies: "list[ElementStudy]") -> Curves:
     """`test/NAME` and `exact/NAME` columns, `errors/NAME`: steps, error; `kind/NAME`: what its axes are."""
     kept: Curves = {}
     for one in studies:
@@ -53,7 +55,7 @@ def limit(law: Any, stress: float) -> Curves:
     return {} if ratio is None else {"limit/shear_stress": {"tau": np.array([ratio * stress])}}
 
 
-def marks(law: Any, studies: "list[Studied]", stress: float) -> Curves:
+def marks(law: Any, studies: "list[ElementStudy]", stress: float) -> Curves:
     """Points of the reference tables on the curves of the law that they are for."""
     if law != Ubcsand() or stress != MARKED:
         return {}

@@ -28,7 +28,7 @@ FIRST = (
 
 
 @dataclass(frozen=True)
-class Studied:
+class ElementStudy:
     """One test: its curve, the exact one or the finest, the errors at each number of steps, and the last order."""
 
     test: ElementTest
@@ -49,7 +49,7 @@ class Studied:
         return log2(seen[-2] / seen[-1]) if len(seen) > 1 else float("nan")
 
 
-def study(law: Any, test: ElementTest, stress: float, steps: int) -> Studied:
+def study(law: Any, test: ElementTest, stress: float, steps: int) -> ElementStudy:
     """The test with once, twice, ... sixteen times the steps."""
     element, begin = Element(law), start(law, test, stress)
     counts = tuple(n * test.steps(steps) for n in DOUBLED)
@@ -62,7 +62,7 @@ def study(law: Any, test: ElementTest, stress: float, steps: int) -> Studied:
     else:
         truth_end = truth
     errors = tuple(distance(test, run, truth_end) for run in runs)
-    return Studied(test, columns(test, runs[-1]), first_failure(runs), truth, source, counts, errors)
+    return ElementStudy(test, columns(test, runs[-1]), first_failure(runs), truth, source, counts, errors)
 
 
 def first_failure(runs: list[Followed]) -> str:
@@ -81,7 +81,7 @@ def distance(test: ElementTest, run: Followed, truth: Columns | None) -> float:
     return float(max(stress, abs(mine["ev"][-1] - truth["ev"][-1]) / length))
 
 
-def checks(law: Any, studied: Studied) -> list[Check]:
+def checks(law: Any, studied: ElementStudy) -> list[Check]:
     """Each test ends, is as close to the exact curve as its order says, and of the order that the law has."""
     group, found = studied.test.title, []
     if studied.failed:
@@ -111,7 +111,7 @@ def examine(
     )  # fmt: skip
 
 
-def lead(law: Any, studies: list[Studied], found: list[Check]) -> str:
+def lead(law: Any, studies: list[ElementStudy], found: list[Check]) -> str:
     """What came out, in words: how many checks, which orders, what is exact."""
     missed = sum(check.outcome != "PASS" for check in found)
     told = [f"{len(studies)} element tests, {len(found)} checks: {f'{missed} did not pass' if missed else 'all pass'}."]
@@ -128,7 +128,7 @@ def lead(law: Any, studies: list[Studied], found: list[Check]) -> str:
     return " ".join(told)
 
 
-def words(law: Any, one: Studied) -> tuple[str, ...]:
+def words(law: Any, one: ElementStudy) -> tuple[str, ...]:
     """What the errors are held against, what came out, and how much of the path is the plane's alone to judge."""
     end = f"It ends early: {one.failed}." if one.failed else ""
     if max(one.errors) <= ROUND_OFF:
@@ -140,7 +140,7 @@ def words(law: Any, one: Studied) -> tuple[str, ...]:
     return tuple(filter(None, [end, f"Errors are against: {one.source}. {order}", beyond(law, one)]))
 
 
-def beyond(law: Any, one: Studied) -> str:
+def beyond(law: Any, one: ElementStudy) -> str:
     """In which share of the finest run's steps zz leaves the plane's range, of a law that yields in the plane alone."""
     if not isinstance(law, Ubcsand) or len(one.curve["s"]) < 2:
         return ""

@@ -8,7 +8,7 @@ from math import inf
 from typing import Literal
 
 from mpm_verify.cases.judging.records import Expectation
-from mpm_verify.mms.spots import Spot
+from mpm_verify.mms.blind_spots import BlindSpot
 from mpm_verify.solver.plugins import identity
 from mpm_verify.solver.sources import TOP, digest
 
@@ -35,7 +35,7 @@ class Run:
     """One frozen point of a sweep; its digest is its name.
 
     `solution`, `material` and `transfer` are specifications: a name, or a name with parameters
-    (`axis_aligned:A=0.01,phase=0.5`); `stress` is a word of solver/orders.py.
+    (`axis_aligned:A=0.01,phase=0.5`); `stress` is a word of solver/stress_update.py.
     `courant` is C dt / dx, with C the reference speed of the solution. `offset` shifts the particles in their cells, by
     shares of their spacing, or, of a body without walls, the grid by shares of a cell; `layout` is how they are spread.
     """
@@ -128,7 +128,7 @@ class Result:
     cpu_s: float = 0.0  # processor time of the steps, all threads, with body force and norms
     gap: float | None = None  # see cases.mms.gaps.Gaps; None for methods that know points only
     packed: Packed | None = None  # see cases.mms.packing.Packing; None where nobody looked
-    audit: tuple[Spot, ...] = ()  # what a study of the solution cannot see, and what it can
+    audit: tuple[BlindSpot, ...] = ()  # what a study of the solution cannot see, and what it can
     parameters: dict[str, float] = field(default_factory=dict)  # of solution and material, the defaults too
     format: int = FORMAT
 
@@ -144,7 +144,7 @@ class Result:
 
 
 @dataclass(frozen=True)
-class Declared:
+class QuantityPlan:
     """A quantity the study judges, or only shows, with what is expected of it; declared before the study runs."""
 
     method: str
@@ -168,5 +168,5 @@ class Study:
     title: str
     command: str
     runs: tuple[Run, ...]
-    declared: tuple[Declared, ...]
+    plans: tuple[QuantityPlan, ...]
     format: int = FORMAT

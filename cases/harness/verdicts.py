@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 from mpm_verify.cases.harness.axes import crossed, error, level, local, middle, replicated
 from mpm_verify.cases.harness.series import Head, Series, collect
-from mpm_verify.cases.harness.study import Declared, Result, Run, Study
+from mpm_verify.cases.harness.study import QuantityPlan, Result, Run, Study
 from mpm_verify.cases.judging.order import Expectation, Level, Outcome, Quantity, Verdict, judge, judge_family
 from mpm_verify.cases.judging.stall import BELOW, USUAL, Measured, Peer, Stall, explain
 
@@ -23,7 +23,7 @@ class Finding:
     `results` are those of the levels with the particles at their usual places, None for runs not done.
     """
 
-    declared: Declared
+    plan: QuantityPlan
     verdict: Verdict
     levels: tuple[Level, ...]  # coarse to fine
     finest: Result | None
@@ -39,11 +39,11 @@ class Finding:
 def findings(study: Study, results: Results) -> list[Finding]:
     """Findings in the order of the declarations; `results` by digest, those not there are runs not done."""
     known = {series.head: series for series in collect(study.runs)}
-    quantities = [_quantity(d, known.get(_head(d)), results) for d in study.declared]
-    judged = [i for i, d in enumerate(study.declared) if d.judged]
+    quantities = [_quantity(d, known.get(_head(d)), results) for d in study.plans]
+    judged = [i for i, d in enumerate(study.plans) if d.judged]
     verdicts = dict(zip(judged, judge_family([quantities[i] for i in judged]), strict=True))
     found = []
-    for i, (declared, quantity) in enumerate(zip(study.declared, quantities, strict=True)):
+    for i, (declared, quantity) in enumerate(zip(study.plans, quantities, strict=True)):
         verdict = verdicts.get(i) or judge(
             quantity.levels, quantity.expectation, floor=quantity.floor, dt_halved=quantity.dt_halved
         )
@@ -55,20 +55,20 @@ def findings(study: Study, results: Results) -> list[Finding]:
 
 def exit_code(found: Sequence[Finding]) -> int:
     """0 all pass, 1 a fail, 2 an error, 3 inconclusive or nothing judged; the worst decides (fail before error)."""
-    codes = {EXIT[f.verdict.outcome] for f in found if f.declared.judged}
+    codes = {EXIT[f.verdict.outcome] for f in found if f.plan.judged}
     return next((code for code in (1, 2, 3) if code in codes), 0 if codes else 3)
 
 
-def refinement(declared: Declared, runs: Sequence[Run]) -> list[Run]:
+def refinement(declared: QuantityPlan, runs: Sequence[Run]) -> list[Run]:
     """The runs of a declared quantity at the Courant number of the study, coarse to fine, at their usual places."""
     return next((list(series.runs) for series in collect(runs) if series.head == _head(declared)), [])
 
 
-def _head(declared: Declared) -> Head:
+def _head(declared: QuantityPlan) -> Head:
     return declared.method, declared.solution, declared.ppc
 
 
-def _quantity(declared: Declared, series: Series | None, results: Results) -> Quantity:
+def _quantity(declared: QuantityPlan, series: Series | None, results: Results) -> Quantity:
     """The levels of one declared quantity, and its error with half the time step on the finest level."""
     if series is None:
         return Quantity([], declared.expectation or NOTHING_EXPECTED, 0.0, None)
@@ -82,10 +82,10 @@ def _quantity(declared: Declared, series: Series | None, results: Results) -> Qu
 
 def _with_stalls(found: Sequence[Finding], known: Mapping[Head, Series], results: Results) -> list[Finding]:
     """The findings, those of the displacement with the stall of their refinement."""
-    displacements = [f for f in found if (f.declared.quantity, f.declared.norm) == STALLS and f.levels]
-    peers = {_head(f.declared): peer for f in displacements if (peer := _peer(f))}
-    stalls = {_head(f.declared): explain(_measured(f, known, results, peers)) for f in displacements}
-    return [replace(f, stall=stalls.get(_head(f.declared))) if f in displacements else f for f in found]
+    displacements = [f for f in found if (f.plan.quantity, f.plan.norm) == STALLS and f.levels]
+    peers = {_head(f.plan): peer for f in displacements if (peer := _peer(f))}
+    stalls = {_head(f.plan): explain(_measured(f, known, results, peers)) for f in displacements}
+    return [replace(f, stall=stalls.get(_head(f.plan))) if f in displacements else f for f in found]
 
 
 def _peer(found: Finding) -> Peer | None:
@@ -97,12 +97,12 @@ def _peer(found: Finding) -> Peer | None:
     finest = done[-1][1] if done else None
     if finest is None or not order or order[0] is None:
         return None
-    return Peer(found.declared.method, order[0], crossed(finest) or 0.0, finest.gap)
+    return Peer(found.plan.method, order[0], crossed(finest) or 0.0, finest.gap)
 
 
 def _measured(found: Finding, known: Mapping[Head, Series], results: Results, peers: Mapping[Head, Peer]) -> Measured:
     """The numbers that can tell why a refinement stalls."""
-    d, series = found.declared, known[_head(found.declared)]
+    d, series = found.plan, known[_head(found.plan)]
     done = doublings(found)
     cells = tuple(result.run.cells for _, result in done)
     lost = [

@@ -17,8 +17,8 @@ from mpm_verify.cases.mms.gaps import LOOKS, Gaps
 from mpm_verify.cases.mms.norms import Norms, compare, new_shares
 from mpm_verify.cases.mms.packing import Packing
 from mpm_verify.mms.audit import audit
+from mpm_verify.mms.blind_spots import BlindSpot
 from mpm_verify.mms.manufacture import Manufactured, manufacture
-from mpm_verify.mms.spots import Spot
 from mpm_verify.solver.boundary import box, moving
 from mpm_verify.solver.layout import CENTRED, Layout, parallelograms
 from mpm_verify.solver.plugins import LAYOUTS, MATERIALS, METHODS, SOLUTIONS, TRANSFERS, create, load
@@ -110,7 +110,7 @@ def manufactured(solution: str, material: str) -> Manufactured:
 
 
 @cache
-def audited(solution: str, material: str) -> tuple[Spot, ...]:
+def audited(solution: str, material: str) -> tuple[BlindSpot, ...]:
     """The auditor's lines on two specifications, once in a process."""
     return audit(manufactured(solution, material), create(SOLUTIONS, solution), create(MATERIALS, material)).spots
 

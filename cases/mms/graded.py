@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import exp, log
 
-from mpm_verify.cases.harness.study import Declared, Result, Run, Study
+from mpm_verify.cases.harness.study import QuantityPlan, Result, Run, Study
 from mpm_verify.cases.mms.sweep import Sweep, build, canonical
 from mpm_verify.solver.plugins import LAYOUTS
 
@@ -48,8 +48,10 @@ def build_graded(plan: Plan, command: str, name: str) -> Study:
         for layout, ppc in (("uniform", plan.ppc), *((layout, dense) for layout in spread))
     ]
     runs = tuple(run for part in parts for run in part.runs if run.courant == Sweep.courant)
-    declared: dict[object, Declared] = {}  # of the uniform layout, which comes first: the others have the same names
-    for d in (d for part in parts for d in part.declared):
+    declared: dict[
+        object, QuantityPlan
+    ] = {}  # of the uniform layout, which comes first: the others have the same names
+    for d in (d for part in parts for d in part.plans):
         declared.setdefault((d.method, d.solution, d.ppc, d.quantity, d.norm), replace(d, judged=False))
     title = f"Uniform and graded layouts of particles on {' and '.join(plan.solutions)}"
     return Study(name, title, command, runs, tuple(declared.values()))

@@ -44,6 +44,6 @@ def build_methods(comparison: Comparison, command: str, name: str) -> Study:
         for solution, cells in comparison.levels.items()
     ]
     runs = tuple(run for part in parts for run in part.runs)
-    declared = tuple(d for part in parts for d in part.declared)
+    declared = tuple(d for part in parts for d in part.plans)
     title = f"{len(comparison.methods)} methods on {', '.join(comparison.levels)}"
     return Study(name, title, command, runs, declared)

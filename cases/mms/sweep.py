@@ -9,11 +9,10 @@ from dataclasses import dataclass, fields, replace
 from math import isqrt
 from typing import Any
 
-from mpm_verify.cases.harness.study import NORMS, QUANTITIES, Declared, Run, Study
+from mpm_verify.cases.harness.study import NORMS, QUANTITIES, QuantityPlan, Run, Study
 from mpm_verify.cases.mms.expectations import JUDGED, expected
 from mpm_verify.mms.energy import check_energy
 from mpm_verify.solver.layout import CENTRED, Offset
-from mpm_verify.solver.orders import check_stress
 from mpm_verify.solver.plugins import (
     LAYOUTS,
     MATERIALS,
@@ -26,6 +25,7 @@ from mpm_verify.solver.plugins import (
     is_file,
     split,
 )
+from mpm_verify.solver.stress_update import check_stress_update
 
 MOST = 64  # replicates
 
@@ -83,7 +83,7 @@ class Sweep:
                 )
         if not 1 <= self.replicates <= MOST:
             raise ValueError(f"replicates = {self.replicates} cannot be run; choose whole numbers from 1 to {MOST}")
-        check_stress(self.stress)
+        check_stress_update(self.stress)
         create(TRANSFERS, self.transfer)
         layout = create(LAYOUTS, self.layout)
         solution = create(SOLUTIONS, self.solution)
@@ -147,21 +147,21 @@ def offsets(replicates: int) -> list[Offset]:
     return [CENTRED, *((float(a), float(b)) for a, b in places)]
 
 
-def declare(sweep: Sweep, names: tuple[str, str, str], ppc: int, quantity: str, norm: str) -> Declared:
+def declare(sweep: Sweep, names: tuple[str, str, str], ppc: int, quantity: str, norm: str) -> QuantityPlan:
     """A quantity with its registered expectation, of FLIP and update-stress-last alone; u in rms is judged."""
     usual = sweep.courant == Sweep.courant and sweep.staggered
     scheme = (canonical(TRANSFERS, sweep.transfer), sweep.stress, canonical(LAYOUTS, sweep.layout))
     expectation = expected(*names, ppc, quantity, norm, usual) if scheme == ("flip", "usl", "uniform") else None
     judged = expectation is not None and (quantity, norm) == JUDGED
-    return Declared(names[0], names[1], ppc, quantity, norm, judged, expectation)
+    return QuantityPlan(names[0], names[1], ppc, quantity, norm, judged, expectation)
 
 
-def converges(declared: Declared) -> bool:
+def converges(declared: QuantityPlan) -> bool:
     """Judged against an order, and so in need of the run with half the time step."""
     return declared.judged and declared.expectation is not None and declared.expectation.order is not None
 
 
-def belongs(declared: Declared, run: Run) -> bool:
+def belongs(declared: QuantityPlan, run: Run) -> bool:
     """Whether the run is a level of the declared quantity."""
     return (declared.method, declared.solution, declared.ppc) == (run.method, run.solution, run.ppc)
 

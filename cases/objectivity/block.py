@@ -1,4 +1,4 @@
-"""The turning block held against its closed form, its inertial share, and every misreading on the same run."""
+"""The turning block held against its closed form, its inertial share, and every negative control on the same run."""
 
 from collections.abc import Mapping
 from concurrent.futures import Executor, Future
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from mpm_verify.cases.harness.checks import Check, Curves
 from mpm_verify.cases.objectivity.exact import ramped_column, rotated
 from mpm_verify.cases.objectivity.turning_block import Block, execute
-from mpm_verify.solver.plugins import MISREADINGS, available
+from mpm_verify.solver.plugins import NEGATIVE_CONTROLS, available
 from mpm_verify.solver.state import Floats
 
 PRINTED, SMALL, REST = "block of 1 m", "block of 1 cm", "block of 1 m, not turned"
@@ -19,9 +19,9 @@ Found = Mapping[str, tuple[Curves, str]]
 
 
 def blocks(block: Block) -> dict[str, Block]:
-    """The runs: as printed, a hundredth of it, the inertial forces alone, and each misreading."""
+    """The runs: as printed, a hundredth of it, the inertial forces alone, and each negative control."""
     named = {PRINTED: block, SMALL: replace(block, L=block.L / 100), REST: replace(block, frame=True)}
-    return named | {name: replace(block, rate=name) for name in available(MISREADINGS)}
+    return named | {name: replace(block, rate=name) for name in available(NEGATIVE_CONTROLS)}
 
 
 def start(block: Block, executor: Executor) -> dict[str, Future[tuple[Curves, str]]]:

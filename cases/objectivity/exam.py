@@ -11,7 +11,7 @@ from mpm_verify.cases.objectivity import rates as kinematic
 from mpm_verify.cases.objectivity.exact import SIMPLE_SHEAR, ramped_column
 from mpm_verify.cases.objectivity.turning_block import Block
 from mpm_verify.cases.objectivity.words import words
-from mpm_verify.solver.plugins import MISREADINGS, RATES, available
+from mpm_verify.solver.plugins import NEGATIVE_CONTROLS, RATES, available
 from mpm_verify.solver.state import Floats
 
 CONTROLS = "Negative controls"
@@ -22,9 +22,9 @@ COARSE = 4  # steps of the stretched turn at which a control of first order is t
 def examine(block: Block, executor: Executor, command: str) -> Examination:
     """All parts; the runs go to the executor, and the rest is done meanwhile."""
     waiting = full.start(block, executor)
-    rates = (*available(RATES), *available(MISREADINGS))
+    rates = (*available(RATES), *available(NEGATIVE_CONTROLS))
     errors = {name: kinematic.order_errors(name) for name in rates}
-    controls = {name: kinematic.figure2(block, name) for name in available(MISREADINGS)}
+    controls = {name: kinematic.figure2(block, name) for name in available(NEGATIVE_CONTROLS)}
     checks = [*kinematic.figure2_checks(block), *kinematic.order_checks(errors), *kinematic.shear_checks()]
     found = {name: future.result() for name, future in waiting.items()}
     checks = [*full.checks(block, found), *checks, *control_checks()]
@@ -43,11 +43,12 @@ def examine(block: Block, executor: Executor, command: str) -> Examination:
 
 
 def control_checks() -> list[Check]:
-    """In few steps along the stretched turn every misreading misses by a tenth of the stress, and no rate does."""
+    """In few steps along the stretched turn every negative control misses by a tenth of the stress, and no rate
+    does."""
     checks = []
-    for name in (*available(MISREADINGS), *available(RATES)):
+    for name in (*available(NEGATIVE_CONTROLS), *available(RATES)):
         miss = float(kinematic.order_errors(name, (COARSE,))[0])
-        wrong = name in available(MISREADINGS)
+        wrong = name in available(NEGATIVE_CONTROLS)
         source = "a control has to be seen" if wrong else "a rate must not look like one"
         what = f"{name}: miss after {COARSE} steps"
         checks.append(Check(CONTROLS, what, miss, MISS, "at least" if wrong else "at most", source))

@@ -1,4 +1,4 @@
-"""Rates and misreadings along prescribed motions: a quarter turn with and without strain, and simple shear."""
+"""Rates and negative controls along prescribed motions: a quarter turn with and without strain, and simple shear."""
 
 from dataclasses import replace
 
@@ -10,7 +10,7 @@ from mpm_verify.cases.objectivity.kinematic import follow, sheared, squeezed_the
 from mpm_verify.cases.objectivity.turning_block import Block
 from mpm_verify.solver.material.hypoelastic import Hypoelastic
 from mpm_verify.solver.plugins import RATES, available
-from mpm_verify.solver.rate_law import objective
+from mpm_verify.solver.rate_material import objective
 from mpm_verify.solver.state import Floats
 
 STEPS = (25, 50, 100, 200, 400)

@@ -42,12 +42,12 @@ class Card:
 
 def cards(record: Record) -> list[Card]:
     """The cards of the judged quantities in the order of their declaration."""
-    return [_card(record, found) for found in record.findings if found.declared.judged]
+    return [_card(record, found) for found in record.findings if found.plan.judged]
 
 
 def summary(record: Record) -> str:
     """`4 of 5 judged quantities PASS, 1 is INCONCLUSIVE.`"""
-    counts = Counter(str(f.verdict.outcome) for f in record.findings if f.declared.judged)
+    counts = Counter(str(f.verdict.outcome) for f in record.findings if f.plan.judged)
     total = counts.total()
     if not total:
         return "This study judges nothing: it only shows."
@@ -58,7 +58,7 @@ def summary(record: Record) -> str:
 
 def _card(record: Record, found: Finding) -> Card:
     """One finding in words."""
-    d, v, e = found.declared, found.verdict, found.declared.expectation
+    d, v, e = found.plan, found.verdict, found.plan.expectation
     diverges = e is not None and e.order is None
     title = f"{words.series(d)}: {words.quantity(d.quantity)} in {d.norm}"
     if len(record.solutions) > 1:
@@ -87,7 +87,7 @@ def _card(record: Record, found: Finding) -> Card:
 
 def divergence(record: Record, found: Finding) -> str:
     """Divergence said plainly, with the growth of rms against the fall of printed where both were measured."""
-    d = found.declared
+    d = found.plan
     series = record.series_of(d)
     name = "Classical MPM" if d.method == "mpm" else words.method(d.method)
     claim = f"{name} diverges here with refinement"

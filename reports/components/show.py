@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from itertools import chain, pairwise
 
 from mpm_verify.cases.harness.series import Series
-from mpm_verify.cases.harness.study import NORMS, QUANTITIES, Declared, Run
+from mpm_verify.cases.harness.study import NORMS, QUANTITIES, QuantityPlan, Run
 from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.cases.judging.order import Outcome
 from mpm_verify.reports.components import words
@@ -63,10 +63,10 @@ def shown_orders(record: Record) -> Table:
 
 def contamination(record: Record) -> Table:
     """Shares of the finest error, judged quantities first."""
-    found = sorted((f for f in record.findings if f.verdict.contamination), key=lambda f: not f.declared.judged)
+    found = sorted((f for f in record.findings if f.verdict.contamination), key=lambda f: not f.plan.judged)
     rows = []
     for f in found:
-        shares, d = f.verdict.contamination, f.declared
+        shares, d = f.verdict.contamination, f.plan
         if shares is not None:
             name = f"{words.quantity(d.quantity)}, {d.norm}"
             share = (words.percent(s) for s in (shares.lower, shares.floor, shares.most))
@@ -78,8 +78,8 @@ def contamination(record: Record) -> Table:
 def shown_verdicts(record: Record) -> Table:
     """Slopes of what is only shown; where something was expected, what the rule would say of it."""
     head = ("series", "quantity", "observed order", "interval", "expected", "the rule would say")
-    found = [f for f in record.findings if not f.declared.judged]
-    known = [f for f in found if f.declared.expectation or f.verdict.observed is not None]
+    found = [f for f in record.findings if not f.plan.judged]
+    known = [f for f in found if f.plan.expectation or f.verdict.observed is not None]
     rows = tuple(_shown(record, f) for f in known)
     return Table("Shown only: fitted orders", head, rows, heads=2, texts=head[4:])
 
@@ -99,7 +99,7 @@ def _cells(record: Record) -> list[int]:
     return sorted({run.cells for s in record.series for run in s.runs})
 
 
-def named(record: Record, of: Run | Declared) -> str:
+def named(record: Record, of: Run | QuantityPlan) -> str:
     """The series, with its solution where the study has more than one."""
     return words.series(of) + (f", {of.solution}" if len(record.solutions) > 1 else "")
 
@@ -125,7 +125,7 @@ def _orders(record: Record, caption: str, keys: Iterable[tuple[Series, str, str]
     """A column a pair of cell sizes, the crossings per particle of the finer one beside it, then the fitted order."""
     cells, rows = _cells(record), []
     passed = tables.crossings(record)
-    fitted = {tables.key(f.declared): words.order(f.verdict.observed) for f in record.findings}
+    fitted = {tables.key(f.plan): words.order(f.verdict.observed) for f in record.findings}
     columns = list(pairwise(cells))
     for s, quantity, norm in keys:
         found = {(a, b): words.order(p) for a, b, p in orders(record, s, quantity, norm)}
@@ -141,7 +141,7 @@ def _orders(record: Record, caption: str, keys: Iterable[tuple[Series, str, str]
 
 
 def _shown(record: Record, found: Finding) -> Row:
-    d, v = found.declared, found.verdict
+    d, v = found.plan, found.verdict
     says = words.DASH if d.expectation is None else str(v.outcome)
     if d.expectation and d.expectation.order is None and v.outcome is Outcome.PASS:
         says += " (diverges, as expected)"

@@ -26,7 +26,7 @@ def figure_rows(record: Record) -> list[Row]:
 def overview(record: Record) -> Table:
     """The table for a paper: a row a method, a column a solution, the last local order of u and the relative error."""
     head = ("method", "per cell", *record.solutions)
-    found = {(f.declared.method, f.declared.ppc, f.declared.solution): f for f in record.findings if _is_u(f)}
+    found = {(f.plan.method, f.plan.ppc, f.plan.solution): f for f in record.findings if _is_u(f)}
     keys = list(dict.fromkeys((s.first.method, s.first.ppc) for s in record.series))
     rows = tuple(
         (words.method(m), str(ppc), *(_cell(record, found.get((m, ppc, s))) for s in record.solutions))
@@ -37,14 +37,14 @@ def overview(record: Record) -> Table:
 
 
 def _is_u(found: Finding) -> bool:
-    return (found.declared.quantity, found.declared.norm) == ("u", "rms")
+    return (found.plan.quantity, found.plan.norm) == ("u", "rms")
 
 
 def _cell(record: Record, found: Finding | None) -> str:
     """`2.00, 1.2e-4`; `lost` where no run finished."""
     if found is None:
         return words.DASH
-    finished = [(run, e) for run, e in record.errors(record.series_of(found.declared), "u", "rms")]
+    finished = [(run, e) for run, e in record.errors(record.series_of(found.plan), "u", "rms")]
     if not finished:
         return "lost"
     result = record.result(finished[-1][0])

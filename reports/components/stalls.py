@@ -32,9 +32,7 @@ def short(found: Finding) -> str:
 
 def looked(record: Record) -> bool:
     """Whether any series has the two orders that a fall needs."""
-    return any(
-        len(f.verdict.local_orders) > 1 for f in record.findings if (f.declared.quantity, f.declared.norm) == STALLS
-    )
+    return any(len(f.verdict.local_orders) > 1 for f in record.findings if (f.plan.quantity, f.plan.norm) == STALLS)
 
 
 def _cause(stall: Stall) -> str:
@@ -43,7 +41,7 @@ def _cause(stall: Stall) -> str:
 
 
 def _told(record: Record, found: Finding, stall: Stall) -> Told:
-    title = words.series(found.declared) + (f", {found.declared.solution}" if len(record.solutions) > 1 else "")
+    title = words.series(found.plan) + (f", {found.plan.solution}" if len(record.solutions) > 1 else "")
     sentences = tuple(words.prose(_names(text)) for text in stall.why)
     return Told(title, words.prose(stall.where), _cause(stall), sentences)
 

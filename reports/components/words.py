@@ -3,7 +3,7 @@
 import math
 import re
 
-from mpm_verify.cases.harness.study import Declared, Run
+from mpm_verify.cases.harness.study import QuantityPlan, Run
 
 METHODS = {
     "mpm": "MPM",
@@ -34,7 +34,7 @@ def quantity(name: str) -> str:
     return QUANTITIES.get(name, name)
 
 
-def series(of: Run | Declared) -> str:
+def series(of: Run | QuantityPlan) -> str:
     """Method and particle count: `CPDI, 4 per cell`."""
     return f"{method(of.method)}, {of.ppc} per cell"
 
@@ -83,7 +83,7 @@ def cell_size(cells: int) -> str:
     return f"1/{cells}"
 
 
-def expected(declared: Declared) -> str:
+def expected(declared: QuantityPlan) -> str:
     """What was registered: an order with its band, `diverges`, or a dash."""
     e = declared.expectation
     if e is None:

@@ -5,13 +5,13 @@ from pathlib import Path
 import pandas as pd
 
 from mpm_verify.cases.column.claims import told
-from mpm_verify.cases.column.exam import Collapse
+from mpm_verify.cases.column.exam import ColumnAnalysis
 from mpm_verify.cases.column.exam import curves as read_curves
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.reports.export.vtk import write_series
 
 
-def tables(collapse: Collapse, store: Store, folder: Path) -> None:
+def tables(collapse: ColumnAnalysis, store: Store, folder: Path) -> None:
     """runs.csv: parameters and numbers of each run; curves.csv: each curve of each run, front to residual."""
     rows, curves = [], []
     for run in collapse.study.runs:
@@ -31,7 +31,7 @@ def tables(collapse: Collapse, store: Store, folder: Path) -> None:
         pd.concat(curves).to_csv(folder / "curves.csv", index=False, float_format="%.7g")
 
 
-def files(collapse: Collapse, store: Store, folder: Path) -> None:
+def files(collapse: ColumnAnalysis, store: Store, folder: Path) -> None:
     """Snapshots of each run, see reports/export/vtk.py."""
     folder.mkdir(exist_ok=True)
     for run in collapse.study.runs:

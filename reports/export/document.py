@@ -20,8 +20,8 @@ def document(study: Study, found: Sequence[Finding], results: Mapping[str, Resul
     content = {
         "version": VERSION,
         "study": study.name,
-        "verdicts": [verdict(f) for f in found if f.declared.judged],
-        "shown": [shown(f) for f in found if not f.declared.judged],
+        "verdicts": [verdict(f) for f in found if f.plan.judged],
+        "shown": [shown(f) for f in found if not f.plan.judged],
         "axes": axes(study.runs, results),
         "runs": [row(results[run.digest]) for run in study.runs if run.digest in results],
         "report": str(report),
@@ -31,7 +31,7 @@ def document(study: Study, found: Sequence[Finding], results: Mapping[str, Resul
 
 def verdict(finding: Finding) -> dict[str, Any]:
     """A judged quantity."""
-    expectation = finding.declared.expectation
+    expectation = finding.plan.expectation
     order = expectation.order if expectation else None
     return {
         **shown(finding),
@@ -43,7 +43,7 @@ def verdict(finding: Finding) -> dict[str, Any]:
 
 def shown(finding: Finding) -> dict[str, Any]:
     """What is measured of a quantity, judged or not."""
-    d, v = finding.declared, finding.verdict
+    d, v = finding.plan, finding.verdict
     return {
         "method": d.method,
         "solution": d.solution,

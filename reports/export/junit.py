@@ -25,10 +25,10 @@ def check_junit(path: Path | None) -> None:
 
 def write_junit(path: Path, study: Study, found: Sequence[Finding]) -> None:
     """Write the file; OSError where it cannot be written."""
-    judged = [f for f in found if f.declared.judged]
+    judged = [f for f in found if f.plan.judged]
     suite = ElementTree.Element("testsuite", name=study.name, tests=str(len(judged)))
     for finding in judged:
-        d, v = finding.declared, finding.verdict
+        d, v = finding.plan, finding.verdict
         name = f"{d.quantity} {d.norm}, {d.ppc} per cell"
         case = ElementTree.SubElement(suite, "testcase", classname=f"{study.name}.{d.method}.{d.solution}", name=name)
         if v.outcome is not Outcome.PASS:

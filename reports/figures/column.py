@@ -14,7 +14,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from mpm_verify.cases.column.claims import Ran
+from mpm_verify.cases.column.claims import FinishedRun
 from mpm_verify.cases.column.experiment import Experiment, experiment
 from mpm_verify.cases.column.refined import Refined
 from mpm_verify.cases.column.run import ColumnRun
@@ -31,13 +31,13 @@ TIME = "time / $\\sqrt{h_0/g}$"
 Labels = Sequence[str]
 
 
-def shared_experiment(ran: Sequence[Ran]) -> Experiment | None:
+def shared_experiment(ran: Sequence[FinishedRun]) -> Experiment | None:
     """What is known of the experiment, where all runs are of one size of column."""
     sizes = {(one.run.width, one.run.aspect, one.run.g) for one in ran}
     return experiment(ran[0].run) if len(sizes) == 1 else None
 
 
-def fronts(ran: Sequence[Ran], labels: Labels) -> Figure:
+def fronts(ran: Sequence[FinishedRun], labels: Labels) -> Figure:
     """Where 99 % of the mass lies against time."""
     with rc_context(style.RC):
         figure, axes = style.panel(SIZE, xlabel=TIME, ylabel="front, 99 % of the mass [m]")
@@ -57,7 +57,7 @@ def fronts(ran: Sequence[Ran], labels: Labels) -> Figure:
     return figure
 
 
-def profiles(ran: Sequence[Ran], labels: Labels) -> Figure:
+def profiles(ran: Sequence[FinishedRun], labels: Labels) -> Figure:
     """Surfaces at the end, the column there was, and what is known of the experiment's deposit."""
     with rc_context(style.RC):
         figure, axes = style.panel(SIZE, xlabel="distance from the wall [m]", ylabel="height [m]")
@@ -82,7 +82,7 @@ def profiles(ran: Sequence[Ran], labels: Labels) -> Figure:
     return figure
 
 
-def energy(ran: Sequence[Ran], labels: Labels, name: str) -> Figure:
+def energy(ran: Sequence[FinishedRun], labels: Labels, name: str) -> Figure:
     """An energy of each run over the potential energy there was."""
     with rc_context(style.RC):
         figure, axes = style.panel(SIZE, xlabel=TIME, ylabel=f"{name} energy / initial potential energy")
@@ -94,7 +94,7 @@ def energy(ran: Sequence[Ran], labels: Labels, name: str) -> Figure:
     return figure
 
 
-def budget(one: Ran) -> Figure:
+def budget(one: FinishedRun) -> Figure:
     """Where the energy of one run is, layer upon layer; together they are the potential energy there was."""
     c, start = one.curves, float(one.curves["potential"][0])
     layers = {

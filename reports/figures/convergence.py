@@ -103,7 +103,7 @@ def _triangle(axes: Axes, record: Record, series: Sequence[Series], quantity: st
     sizes = sorted({h for h, _ in points})
     if len(sizes) < 2:
         return
-    orders = [d.expectation.order for d in record.study.declared if d.expectation and d.expectation.order]
+    orders = [d.expectation.order for d in record.study.plans if d.expectation and d.expectation.order]
     order = orders[0] if orders else 2.0
     at = max(0, (len(sizes) - 1) // 2 - (len(sizes) > 4))
     h0, h1, slope = sizes[at], sizes[at + 1], order + EXTRA[norm]

@@ -54,7 +54,7 @@ def _draw(axes: Axes, record: Record, series: Series, cells: Sequence[int], quan
 
 def _band(axes: Axes, record: Record, solution: str, quantity: str, norm: str) -> None:
     """The band that was registered for the first judged order."""
-    for d in record.study.declared:
+    for d in record.study.plans:
         e = d.expectation
         if e and e.order is not None and d.judged and (d.solution, d.quantity, d.norm) == (solution, quantity, norm):
             axes.axhspan(e.order - e.below, e.order + e.above, color="#009E73", alpha=0.16, linewidth=0)

@@ -16,7 +16,7 @@ LABELS = {"xx": "\N{GREEK SMALL LETTER SIGMA}$_{xx}$", "yy": "\N{GREEK SMALL LET
           "xy": "\N{GREEK SMALL LETTER SIGMA}$_{xy}$"}  # fmt: skip
 WIDE, HIGH = SIZE = 5.4, 4.6
 SPARSE = 12  # samples between two marks
-UNSEEN = 0.02  # of |sigma_v|: misreadings that miss by less lie on the line
+UNSEEN = 0.02  # of |sigma_v|: negative controls that miss by less lie on the line
 
 
 def stresses(exact: Curve, blocks: Mapping[str, Curve], wave: Curve | None = None) -> Figure:
@@ -74,7 +74,8 @@ def inertia(runs: Mapping[str, Curve]) -> Figure:
 
 
 def misread(exact: Curve, controls: Mapping[str, Curve]) -> Figure:
-    """Shear stress of Figure 2 by each misreading: lines for what is wrong, one set of marks for what is right here."""
+    """Shear stress of Figure 2 by each negative control: lines for what is wrong, one set of marks for what is right
+    here."""
     with rc_context(style.RC):
         figure, axes = style.panel(SIZE, xlabel="time [s]", ylabel="σ$_{xy}$ / |σ$_v$|", xlim=(1, 2), ylim=(-0.4, 0.4))
         late = exact["t"] >= 1.0
@@ -92,7 +93,7 @@ def misread(exact: Curve, controls: Mapping[str, Curve]) -> Figure:
 
 
 def orders(errors: Mapping[str, Curve], rates: Sequence[str]) -> Figure:
-    """Error against the number of steps, rates in full lines and misreadings in broken ones."""
+    """Error against the number of steps, rates in full lines and negative controls in broken ones."""
     with rc_context(style.RC):
         figure, axes = style.panel(
             SIZE, xlabel="steps in a quarter turn", ylabel="error of the stress at the end, relative"

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
-from mpm_verify.cases.column.exam import Collapse
+from mpm_verify.cases.column.exam import ColumnAnalysis
 from mpm_verify.cases.column.run import ColumnResult, ColumnRun
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.reports.components.examined import Section
@@ -21,7 +21,7 @@ SET_UP = (
 )
 
 
-def refinement(collapse: Collapse, add: Add) -> Section:
+def refinement(collapse: ColumnAnalysis, add: Add) -> Section:
     """Richardson extrapolation where levels are refined, scatter where particles are shifted."""
     figures, rows = [], []
     heads = ("axis", *(("runs with",) if any(one.runs for one in collapse.refined) else ()))
@@ -72,7 +72,7 @@ def set_up(store: Store, add: Add, run: ColumnRun, result: ColumnResult) -> Sect
     )
 
 
-def films(collapse: Collapse, store: Store, add: Add, ran: Sequence[tuple[ColumnRun, ColumnResult]]) -> Section:
+def films(collapse: ColumnAnalysis, store: Store, add: Add, ran: Sequence[tuple[ColumnRun, ColumnResult]]) -> Section:
     """Snapshots of the last run, and animations of the first few."""
     run, result = ran[-1]
     image = add("snapshots", draw.snapshots(run, store.arrays(result.digest)), "Layers of sand at a few times.")
@@ -83,7 +83,7 @@ def films(collapse: Collapse, store: Store, add: Add, ran: Sequence[tuple[Column
     return Section("pictures", "The collapse", figures=[(image, caption)], films=reels, wide=True)
 
 
-def alive(collapse: Collapse) -> Section:
+def alive(collapse: ColumnAnalysis) -> Section:
     """What scaling, void strain and smoothing do to the runs, failed ones too."""
     head = ("run", "limit [cells]", "limited domains", "with void strain", "without stress", "void strain", "det F",
             "crowding", "outside the cone", "worst t/(s sin φ)", "largest s / ρgh₀", "fastest particle [m/s]",

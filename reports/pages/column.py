@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from mpm_verify.cases.column.exam import Collapse, look
+from mpm_verify.cases.column.exam import ColumnAnalysis, look
 from mpm_verify.cases.column.run import ColumnResult, ColumnRun
 from mpm_verify.cases.harness.store import Store, StoreError
 from mpm_verify.reports.components.examined import Section, checks_table, render
@@ -18,7 +18,7 @@ from mpm_verify.reports.pages._column_more import alive, films, refinement, set_
 WORDS = {True: "reproduced", False: "not reproduced", None: "cannot be told"}
 
 
-def page(folder: Path, vtk: bool = False) -> tuple[Collapse, Path]:
+def page(folder: Path, vtk: bool = False) -> tuple[ColumnAnalysis, Path]:
     """Write the page of a study folder, its tables, and with `vtk` the files of its snapshots. Raises StoreError."""
     collapse, store = read(folder)
     made = render(folder, collapse.examination, lambda _, add: sections(collapse, store, add))
@@ -31,14 +31,14 @@ def page(folder: Path, vtk: bool = False) -> tuple[Collapse, Path]:
     return collapse, made
 
 
-def read(folder: Path) -> tuple[Collapse, Store]:
+def read(folder: Path) -> tuple[ColumnAnalysis, Store]:
     """What the folder holds; results of earlier sources where there are none of these. Raises StoreError."""
     store = Store(folder, "column")
     study = store.study()
     return look(study, held(store, study)[0], store), store
 
 
-def sections(collapse: Collapse, store: Store, add: Add) -> Sequence[Section]:
+def sections(collapse: ColumnAnalysis, store: Store, add: Add) -> Sequence[Section]:
     """Its parts; figures only where a run came to its end."""
     found = [summary(collapse, add)]
     if collapse.claims:
@@ -54,7 +54,7 @@ def sections(collapse: Collapse, store: Store, add: Add) -> Sequence[Section]:
         checks_table("Checks", collapse.examination.checks, group=True)])]  # fmt: skip
 
 
-def summary(collapse: Collapse, add: Add) -> Section:
+def summary(collapse: ColumnAnalysis, add: Add) -> Section:
     """What each run came to."""
     head = ("run", "front 99 %", "99.9 %", "toe", "height", "rest [√(h₀/g)]", "height falls", "area", "outcome")
     rows = []
@@ -87,7 +87,7 @@ def numbers(run: ColumnRun, result: ColumnResult | None) -> tuple[str, ...]:
     return (*lengths, rest, percent(v["creep"]), f"{v['area']:.2f}", "finished")
 
 
-def said(collapse: Collapse) -> Section:
+def said(collapse: ColumnAnalysis) -> Section:
     """The paper's sentences."""
     several = any(claim.runs for claim in collapse.claims)
     head = ("the paper says", *(("runs with",) if several else ()), "here", "what was found")
@@ -99,7 +99,7 @@ def said(collapse: Collapse) -> Section:
         Table("Sentences of the paper on this axis", head, rows, texts=head[1:])])  # fmt: skip
 
 
-def motion(collapse: Collapse, add: Add) -> Section:
+def motion(collapse: ColumnAnalysis, add: Add) -> Section:
     """Fronts and final profiles."""
     ran, labels = collapse.ran, [collapse.label(one.run) for one in collapse.ran]
     return Section("motion", "Run-out", figures=[
@@ -110,7 +110,7 @@ def motion(collapse: Collapse, add: Add) -> Section:
     ])  # fmt: skip
 
 
-def budget(collapse: Collapse, add: Add) -> Section:
+def budget(collapse: ColumnAnalysis, add: Add) -> Section:
     """All of the energy of the first run and of the last."""
     figures = []
     for place, key in {0: "first", len(collapse.ran) - 1: "last"}.items():
@@ -120,7 +120,7 @@ def budget(collapse: Collapse, add: Add) -> Section:
     return Section("budget", "Where the energy goes", figures=figures)
 
 
-def energy(collapse: Collapse, add: Add) -> Section:
+def energy(collapse: ColumnAnalysis, add: Add) -> Section:
     """Energies of all."""
     ran, labels = collapse.ran, [collapse.label(one.run) for one in collapse.ran]
     figures = [

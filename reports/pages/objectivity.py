@@ -105,7 +105,7 @@ def orders(examination: Examination, add: Add) -> Section:
     return Section(
         "orders", "Orders in time: a turn with strain", _notes(examination, ORDERS),
         [(add("orders", draw.orders(errors, right), "Error against the number of steps."),
-          "Full lines: rates. Broken lines: misreadings; those that do not fall never converge.")],
+          "Full lines: rates. Broken lines: negative controls; those that do not fall never converge.")],
         [Table("Relative error at the end", ("reading", *(f"{n:g} steps" for n in steps)), rows),
          _checks(examination, ORDERS)],
     )  # fmt: skip

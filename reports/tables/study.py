@@ -8,7 +8,7 @@ from typing import Any
 import pandas as pd
 
 from mpm_verify.cases.harness.axes import crossed, particle_axes, position_axes, time_axes
-from mpm_verify.cases.harness.study import NORMS, QUANTITIES, Declared
+from mpm_verify.cases.harness.study import NORMS, QUANTITIES, QuantityPlan
 from mpm_verify.reports.components.cost import compares, costs
 from mpm_verify.reports.figures.local_orders import orders as pairs
 from mpm_verify.reports.frames import Record
@@ -42,14 +42,14 @@ def frames(record: Record) -> dict[str, pd.DataFrame]:
 
 def roles(record: Record) -> dict[tuple[Any, ...], str]:
     """`judged` or `shown` for each declared (method, solution, ppc, quantity, norm); what is not declared is shown."""
-    return {key(d): "judged" if d.judged else "shown" for d in record.study.declared}
+    return {key(d): "judged" if d.judged else "shown" for d in record.study.plans}
 
 
 def verdicts(record: Record) -> Rows:
     """A row a declared quantity. Where nothing was expected there is no verdict, only a slope."""
     rows = []
     for found in record.findings:
-        d, v, e = found.declared, found.verdict, found.declared.expectation
+        d, v, e = found.plan, found.verdict, found.plan.expectation
         expected = None if e is None else e.kind if e.order is None else e.order
         low, high = v.interval or (None, None)
         rows.append(
@@ -98,8 +98,8 @@ def contamination(record: Record) -> Rows:
     for found in record.findings:
         shares = found.verdict.contamination
         if shares is not None:
-            row: dict[str, Any] = dict(zip(KEY, key(found.declared), strict=True))
-            row |= {"role": "judged" if found.declared.judged else "shown"}
+            row: dict[str, Any] = dict(zip(KEY, key(found.plan), strict=True))
+            row |= {"role": "judged" if found.plan.judged else "shown"}
             rows.append(row | {"lower_order": shares.lower, "floor": shares.floor, "at_most": shares.most})
     return rows
 
@@ -129,7 +129,7 @@ def stalls(record: Record) -> Rows:
     rows = []
     for found in record.findings:
         for cause in found.stall.causes if found.stall else ():
-            row: dict[str, Any] = dict(zip(KEY, key(found.declared), strict=True))
+            row: dict[str, Any] = dict(zip(KEY, key(found.plan), strict=True))
             row |= {"where": found.stall.where if found.stall else None, "cause": cause.name}
             rows.append(row | {"finding": str(cause.finding), "weight": cause.weight, "measured": cause.text})
     return rows
@@ -177,6 +177,6 @@ def crossings(record: Record) -> dict[tuple[Any, ...], float]:
     return {(run.method, run.solution, run.ppc, run.cells): passed for run, passed in every if passed is not None}
 
 
-def key(d: Declared) -> tuple[Any, ...]:
+def key(d: QuantityPlan) -> tuple[Any, ...]:
     """What names a declared quantity."""
     return d.method, d.solution, d.ppc, d.quantity, d.norm

@@ -108,14 +108,14 @@ class Cpdi(Basis):
     support: ClassVar[int] = 16
     order: ClassVar[float] = 2.0
     fill = staticmethod(fill)
-    width: ClassVar[int] = 4
+    domain_size: ClassVar[int] = 4
 
     def __post_init__(self) -> None:
         if not self.limit > 0:
             raise ValueError(f"limit = {self.limit} must be above zero: half a diagonal of a domain, in cells")
         if self.limit < inf:
             object.__setattr__(self, "fill", fill_limited)
-            object.__setattr__(self, "width", 5)
+            object.__setattr__(self, "domain_size", 5)
 
     def domain(self, layout: Layout, place: Place) -> Floats:
         """Initial half side vectors r0; F moves them. With a limit, that too."""

@@ -51,7 +51,7 @@ def fill(x, F, corner, ox, oy, inv_dx, nx, ny, x0, x1, y0, y1, table, node):
 
 
 @kernel(nothing(F1, f8, f8, f8, i8, F2, f8))
-def move(places, ox, oy, inv_dx, ny, motion, dt):
+def move(places, ox, oy, inv_dx, ny, velocity_acceleration, dt):
     """x_c <- x_c + dt sum S_i(x_c) v_i for flat places."""
     for c in range(places.shape[0] // 2):
         x = (places[2 * c] - ox) * inv_dx
@@ -62,18 +62,18 @@ def move(places, ox, oy, inv_dx, ny, motion, dt):
         above = y - j
         node = np.int64(i) * ny + np.int64(j)
         for a in range(2):
-            low = (1.0 - above) * motion[node, a] + above * motion[node + 1, a]
-            high = (1.0 - above) * motion[node + ny, a] + above * motion[node + ny + 1, a]
+            low = (1.0 - above) * velocity_acceleration[node, a] + above * velocity_acceleration[node + 1, a]
+            high = (1.0 - above) * velocity_acceleration[node + ny, a] + above * velocity_acceleration[node + ny + 1, a]
             places[2 * c + a] += dt * ((1.0 - right) * low + right * high)
 
 
 @kernel(nothing(F1, F1, f8, i8, F2, f8), parallel=True)
-def move_all(places, origin, inv_dx, ny, motion, dt):
+def move_all(places, origin, inv_dx, ny, velocity_acceleration, dt):
     """The same in blocks."""
     for block in prange((places.shape[0] + 8 * BLOCK - 1) // (8 * BLOCK)):
         lo = 8 * BLOCK * block
         hi = min(lo + 8 * BLOCK, places.shape[0])
-        move(places[lo:hi], origin[0], origin[1], inv_dx, ny, motion, dt)
+        move(places[lo:hi], origin[0], origin[1], inv_dx, ny, velocity_acceleration, dt)
 
 
 class Cpdi2(Basis):
@@ -82,7 +82,7 @@ class Cpdi2(Basis):
     support: ClassVar[int] = 16
     order: ClassVar[float] = 2.0
     fill = staticmethod(fill)
-    width: ClassVar[int] = 8
+    domain_size: ClassVar[int] = 8
 
     @staticmethod
     def domain(layout: Layout, place: Place) -> Floats:
@@ -97,7 +97,7 @@ class Cpdi2(Basis):
     @staticmethod
     def convect(particles: Particles, grid: Grid, dt: float) -> None:
         """Corners are material points: they go with the velocity of the grid."""
-        move_all(particles.domain.ravel(), grid.origin, 1.0 / grid.dx, grid.ny, grid.motion, dt)
+        move_all(particles.domain.ravel(), grid.origin, 1.0 / grid.dx, grid.ny, grid.velocity_acceleration, dt)
 
     @staticmethod
     def refusal(F: Floats, domain: Floats, dx: float) -> str:

@@ -64,7 +64,7 @@ class Cpgimp(Basis):
     support: ClassVar[int] = 16
     order: ClassVar[float] = 2.0
     fill = staticmethod(fill)
-    width: ClassVar[int] = 2
+    domain_size: ClassVar[int] = 2
 
     @staticmethod
     def domain(layout: Layout, place: Place) -> Floats:

@@ -70,7 +70,7 @@ class Gimp(Basis):
     support: ClassVar[int] = 9
     order: ClassVar[float] = 2.0
     fill = staticmethod(fill)
-    width: ClassVar[int] = 2
+    domain_size: ClassVar[int] = 2
 
     @staticmethod
     def domain(layout: Layout, place: Place) -> Floats:

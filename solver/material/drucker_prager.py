@@ -26,7 +26,7 @@ from mpm_verify.solver.elastic import Elastic
 from mpm_verify.solver.material.mohr_coulomb import check_strength
 from mpm_verify.solver.objective import RESPOND
 from mpm_verify.solver.principal import in_order, in_plane
-from mpm_verify.solver.rate_law import RateLaw
+from mpm_verify.solver.rate_material import RateMaterial
 from mpm_verify.solver.state import Floats
 from mpm_verify.solver.voids import check_void, close_void
 
@@ -84,7 +84,7 @@ CONES: dict[str, Callable[[float, float], tuple[float, float]]] = {
 
 
 @dataclass(frozen=True)
-class DruckerPrager(RateLaw, Elastic):
+class DruckerPrager(RateMaterial, Elastic):
     """Parameters, history, and ValueError as in mohr_coulomb, no cut-off; `cone`: plane_strain or compression."""
 
     E: float = 840e3
@@ -99,7 +99,7 @@ class DruckerPrager(RateLaw, Elastic):
 
     def __post_init__(self) -> None:
         Elastic.__post_init__(self)
-        RateLaw.__post_init__(self)
+        RateMaterial.__post_init__(self)
         check_strength(self.phi, self.psi, self.c)
         check_void(self.void, self.c)
         if self.cone not in CONES:

@@ -10,7 +10,7 @@ import numpy as np
 from mpm_verify.solver._jit import kernel
 from mpm_verify.solver.elastic import Elastic
 from mpm_verify.solver.objective import RESPOND
-from mpm_verify.solver.rate_law import RateLaw
+from mpm_verify.solver.rate_material import RateMaterial
 from mpm_verify.solver.state import Floats
 
 
@@ -28,14 +28,14 @@ def respond(constants, sigma, de, history):
 
 
 @dataclass(frozen=True)
-class Hypoelastic(RateLaw, Elastic):
+class Hypoelastic(RateMaterial, Elastic):
     """Parameters E, nu, rho0 and the rate."""
 
     respond = staticmethod(respond)
 
     def __post_init__(self) -> None:
         Elastic.__post_init__(self)
-        RateLaw.__post_init__(self)
+        RateMaterial.__post_init__(self)
 
     def constants(self) -> Floats:
         """lam, mu."""

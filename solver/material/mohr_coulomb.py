@@ -22,7 +22,7 @@ from mpm_verify.solver._jit import kernel
 from mpm_verify.solver.elastic import Elastic
 from mpm_verify.solver.objective import RESPOND
 from mpm_verify.solver.principal import advance_elastic, along, in_order, in_place
-from mpm_verify.solver.rate_law import RateLaw
+from mpm_verify.solver.rate_material import RateMaterial
 from mpm_verify.solver.state import Floats
 from mpm_verify.solver.voids import check_void, close_void
 
@@ -93,7 +93,7 @@ def respond(constants, sigma, de, history):
 
 
 @dataclass(frozen=True)
-class MohrCoulomb(RateLaw, Elastic):
+class MohrCoulomb(RateMaterial, Elastic):
     """Parameters E, nu, rho0, the rate; angles phi and psi in degrees, c and the cut-off sigma_t in the unit of E.
 
     Defaults are the sand of the paper's column collapse, in SI units. ValueError unless 0 < phi < 90 (for phi = 0
@@ -117,7 +117,7 @@ class MohrCoulomb(RateLaw, Elastic):
 
     def __post_init__(self) -> None:
         Elastic.__post_init__(self)
-        RateLaw.__post_init__(self)
+        RateMaterial.__post_init__(self)
         check_strength(self.phi, self.psi, self.c)
         check_void(self.void, self.c)
         if not 0 <= self.sigma_t < inf:

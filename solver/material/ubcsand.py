@@ -30,7 +30,7 @@ from numpy.typing import NDArray
 from mpm_verify.solver._jit import kernel
 from mpm_verify.solver.mobilised import onset, slip, unit
 from mpm_verify.solver.objective import RESPOND
-from mpm_verify.solver.rate_law import RateLaw
+from mpm_verify.solver.rate_material import RateMaterial
 from mpm_verify.solver.state import Floats
 from mpm_verify.solver.voids import check_void, close_void
 
@@ -152,7 +152,7 @@ def respond(constants, sigma, de, history):
 
 
 @dataclass(frozen=True)
-class Ubcsand(RateLaw):
+class Ubcsand(RateMaterial):
     """The paper's Table 2: numbers KGe, KBe, KGp with exponents ne, me, np, angles phi_f, phi_pt in degrees, SI units.
 
     Rf is not in that table, and decides how soon the strength is mobilised; the default is the generic correlation
@@ -192,7 +192,7 @@ class Ubcsand(RateLaw):
     respond = staticmethod(respond)
 
     def __post_init__(self) -> None:
-        RateLaw.__post_init__(self)
+        RateMaterial.__post_init__(self)
         check(self)
 
     @property

@@ -1,7 +1,7 @@
 """Green-Naghdi rate: the law works in the frame that turns with R of F = R U (Kamojjala & Brannon 2011).
 
 The stress is unrotated by R at the start of the step, D by R in its middle, and the new stress is rotated by R at its
-end. That is what the paper's section 2.2 means; what its formulas say is in solver/misreadings. The frame is the
+end. That is what the paper's section 2.2 means; what its formulas say is in solver/negative_controls. The frame is the
 material's own, so a law may tell its axes apart. Second order in time, as all rates here (tests/test_rates.py).
 """
 

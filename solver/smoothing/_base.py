@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, get_args
 import numpy as np
 
 from mpm_verify.solver.model import fail
-from mpm_verify.solver.rate_law import RateLaw
+from mpm_verify.solver.rate_material import RateMaterial
 from mpm_verify.solver.smoothing._project import project, strained, strains
 from mpm_verify.solver.state import Floats, Particles
 
@@ -49,31 +49,31 @@ class Smoothing:
 
     def check(self, law: Any) -> None:
         """Raises ValueError for a law that cannot be smoothed."""
-        if not isinstance(law, RateLaw) or law.rate not in RATES:
+        if not isinstance(law, RateMaterial) or law.rate not in RATES:
             raise ValueError(f"smoothing must have a law in rate form with a rate of {', '.join(RATES)}")
 
     def stress(self, model: "Model") -> None:
-        """Write particles.felt, the stress of the internal force, at the start of a step."""
+        """Write particles.sigma_smoothed, the stress of the internal force, at the start of a step."""
         p = model.particles
         if self.of == "rate":
             return
-        felt = p.sigma.copy()
-        felt[:, [0, 1, 3]] = self.smooth(model, p.x, p.sigma[:, [0, 1, 3]])
+        smoothed = p.sigma.copy()
+        smoothed[:, [0, 1, 3]] = self.smooth(model, p.x, p.sigma[:, [0, 1, 3]])
         if self.into == "history":
-            p.sigma[:] = felt
+            p.sigma[:] = smoothed
         else:
-            p.felt = felt
+            p.sigma_smoothed = smoothed
 
     def strain(self, model: "Model", x: Floats) -> Floats | None:
         """F (P,2,2) of the strain that the law is to see, at the end of a step that began at x (P,2)."""
         p = model.particles
         if self.of == "stress":
             return None
-        motion, felt = np.empty((len(p), 4)), np.empty_like(p.F)
+        motion, F_smoothed = np.empty((len(p), 4)), np.empty_like(p.F)
         strains(p.F_old, p.F, motion)
         motion[:, :3] = self.smooth(model, x, motion[:, :3])
-        strained(p.F_old, motion, felt)
-        return felt
+        strained(p.F_old, motion, F_smoothed)
+        return F_smoothed
 
     def smooth(self, model: "Model", x: Floats, tensor: Floats) -> Floats:
         """Plane tensors xx, yy, xy (P,3) with the chosen parts projected."""

@@ -34,5 +34,5 @@ class Fbar(Smoothing):
         p = model.particles
         ratio = np.linalg.det(p.F) / np.linalg.det(p.F_old.reshape(-1, 2, 2))
         mean = self.project(model, x, ratio[:, None])[:, 0]
-        felt: Floats = ((1 + self.beta * (mean / ratio - 1)) ** 0.5)[:, None, None] * p.F
-        return felt
+        F_smoothed: Floats = ((1 + self.beta * (mean / ratio - 1)) ** 0.5)[:, None, None] * p.F
+        return F_smoothed

@@ -25,8 +25,9 @@ class Transfer:
     def give(self, model: "Model", momentum: Floats) -> None:
         """Add to the first two columns of `momentum` (n,4) what the particles' velocities do not tell."""
 
-    def filter(self, model: "Model", motion: Floats) -> None:
-        """Make of lumped velocities, the first columns of `motion` (n,4), those that move and strain the particles."""
+    def filter(self, model: "Model", velocity_acceleration: Floats) -> None:
+        """Make of lumped velocities, the first columns of `velocity_acceleration` (n,4), those that move and strain
+        the particles."""
 
     def take(self, model: "Model") -> None:
         """Take from the grid's new velocities what particles keep besides v."""

@@ -54,7 +54,7 @@ def spread_all(fill, K, W, start, x, F, m, values, domain, origin, inv_dx, nx, n
 
 
 @kernel(nothing(Fill, i8, i8, i8, i8, F2, F3, F1, F1, f8, i8, i8, F2, F2))
-def collect_chunk(fill, K, W, start, end, x, F, domain, origin, inv_dx, nx, ny, motion, values):
+def collect_chunk(fill, K, W, start, end, x, F, domain, origin, inv_dx, nx, ny, velocity_acceleration, values):
     """The particles start ... end-1."""
     xs = x.reshape(-1)
     Fs = F.reshape(-1)
@@ -71,10 +71,10 @@ def collect_chunk(fill, K, W, start, end, x, F, domain, origin, inv_dx, nx, ny, 
             for k in range(np.uint64(K)):
                 i = np.uint64(node[k * B + q])
                 N = table[k * B + q]
-                vx += N * motion[i, 0]
-                vy += N * motion[i, 1]
-                ax += N * motion[i, 2]
-                ay += N * motion[i, 3]
+                vx += N * velocity_acceleration[i, 0]
+                vy += N * velocity_acceleration[i, 1]
+                ax += N * velocity_acceleration[i, 2]
+                ay += N * velocity_acceleration[i, 3]
             p = np.uint64(lo) + q
             values[p, 0] = vx
             values[p, 1] = vy
@@ -83,16 +83,34 @@ def collect_chunk(fill, K, W, start, end, x, F, domain, origin, inv_dx, nx, ny, 
 
 
 @kernel(nothing(Fill, i8, i8, F2, F3, F1, F1, f8, i8, i8, F2, F2), parallel=True)
-def collect_all(fill, K, W, x, F, domain, origin, inv_dx, nx, ny, motion, values):
+def collect_all(fill, K, W, x, F, domain, origin, inv_dx, nx, ny, velocity_acceleration, values):
     """values (P,4) = sum N motion."""
     for c in prange((x.shape[0] + CHUNK - 1) // CHUNK):
         start = c * CHUNK
         end = min(x.shape[0], start + CHUNK)
-        collect_chunk(fill, K, W, start, end, x, F, domain, origin, inv_dx, nx, ny, motion, values)
+        collect_chunk(fill, K, W, start, end, x, F, domain, origin, inv_dx, nx, ny, velocity_acceleration, values)
 
 
 @kernel(i8(Fill, i8, i8, i8, i8, F2, F3, F1, F1, f8, i8, i8, F2, F2, f8, f8, I1))
-def advect_chunk(fill, K, W, start, end, x, F, domain, origin, inv_dx, nx, ny, motion, strain, dt, half, crossed):
+def advect_chunk(
+    fill,
+    K,
+    W,
+    start,
+    end,
+    x,
+    F,
+    domain,
+    origin,
+    inv_dx,
+    nx,
+    ny,
+    velocity_acceleration,
+    strain,
+    dt,
+    half,
+    cell_crossings,
+):
     """The particles start ... end-1; returns and counts as transfer.g2p_chunk."""
     xs = x.reshape(-1)
     Fs = F.reshape(-1)
@@ -102,7 +120,7 @@ def advect_chunk(fill, K, W, start, end, x, F, domain, origin, inv_dx, nx, ny, m
     after = np.zeros(2 * BLOCK)
     dNx = np.uint64(K * BLOCK)
     dNy = np.uint64(2 * K * BLOCK)
-    lost = -1
+    inverted = -1
     for lo in range(start, end, BLOCK):
         hi = min(lo + BLOCK, end)
         fill(
@@ -116,8 +134,8 @@ def advect_chunk(fill, K, W, start, end, x, F, domain, origin, inv_dx, nx, ny, m
             for k in range(np.uint64(K)):
                 at = k * B + q
                 i = np.uint64(node[at])
-                vx += table[at] * motion[i, 0]
-                vy += table[at] * motion[i, 1]
+                vx += table[at] * velocity_acceleration[i, 0]
+                vy += table[at] * velocity_acceleration[i, 1]
                 Lxx += strain[i, 0] * table[at + dNx]
                 Lxy += strain[i, 0] * table[at + dNy]
                 Lyx += strain[i, 1] * table[at + dNx]
@@ -127,50 +145,56 @@ def advect_chunk(fill, K, W, start, end, x, F, domain, origin, inv_dx, nx, ny, m
             deform(p, F, Lxx, Lxy, Lyx, Lyy, dt, half)
         cells_of(xs[2 * lo : 2 * hi], origin[0], origin[1], inv_dx, after)
         for b in range(hi - lo):
-            crossed[0] += int(before[b] != after[b]) + int(before[BLOCK + b] != after[BLOCK + b])
-        if lost < 0 and not invertible(Fs[4 * lo : 4 * hi]):
-            lost = lo
-    return lost
+            cell_crossings[0] += int(before[b] != after[b]) + int(before[BLOCK + b] != after[BLOCK + b])
+        if inverted < 0 and not invertible(Fs[4 * lo : 4 * hi]):
+            inverted = lo
+    return inverted
 
 
 @kernel(nothing(Fill, i8, i8, F2, F3, F1, F1, f8, i8, i8, F2, F2, f8, f8, I1, I1), parallel=True)
-def advect_all(fill, K, W, x, F, domain, origin, inv_dx, nx, ny, motion, strain, dt, half, lost, crossed):
-    """x += dt sum N motion, and F of the end of the step by L = sum strain dN; `lost`, `crossed` as in transfer.g2p."""
-    for c in prange(lost.shape[0]):
+def advect_all(
+    fill, K, W, x, F, domain, origin, inv_dx, nx, ny, velocity_acceleration, strain, dt, half, inverted, cell_crossings
+):
+    """x += dt sum N motion, and F of the end of the step by L = sum strain dN; `inverted`, `cell_crossings` as in
+    transfer.g2p."""
+    for c in prange(inverted.shape[0]):
         start = c * CHUNK
         end = min(x.shape[0], start + CHUNK)
-        lost[c] = advect_chunk(
-            fill, K, W, start, end, x, F, domain, origin, inv_dx, nx, ny, motion, strain, dt, half,
-            crossed[c : c + 1],
+        inverted[c] = advect_chunk(
+            fill, K, W, start, end, x, F, domain, origin, inv_dx, nx, ny, velocity_acceleration, strain, dt, half,
+            cell_crossings[c : c + 1],
         )  # fmt: skip
 
 
 def spread(model: "Model", values: Floats) -> Floats:
     """Momentum at the nodes, the first columns of (n,4), of particles with velocities `values` (P,2)."""
-    g, p, basis, out = model.grid, model.particles, model.basis, np.zeros_like(model.grid.given)
+    g, p, basis, out = model.grid, model.particles, model.basis, np.zeros_like(model.grid.momentum_force)
     spread_all(
-        basis.fill, basis.support, basis.width, model.slabs.start, p.x, p.F, p.m, np.ascontiguousarray(values),
+        basis.fill, basis.support, basis.domain_size, model.slabs.start, p.x, p.F, p.m, np.ascontiguousarray(values),
         p.domain.ravel(), g.origin, 1.0 / g.dx, g.nx, g.ny, out,
     )  # fmt: skip
     return out
 
 
-def collect(model: "Model", motion: Floats) -> Floats:
+def collect(model: "Model", velocity_acceleration: Floats) -> Floats:
     """Velocity and acceleration (P,4) of the grid, given at its nodes (n,4), where the particles are."""
     g, p, basis, values = model.grid, model.particles, model.basis, np.empty((len(model.particles), 4))
     collect_all(
-        basis.fill, basis.support, basis.width, p.x, p.F, p.domain.ravel(), g.origin, 1.0 / g.dx, g.nx, g.ny, motion,
+        basis.fill, basis.support, basis.domain_size, p.x, p.F, p.domain.ravel(), g.origin, 1.0 / g.dx, g.nx, g.ny,
+        velocity_acceleration,
         values,
     )  # fmt: skip
     return values
 
 
-def advect(model: "Model", motion: Floats, strain: Floats) -> None:
-    """Places move with the velocities `motion`, F with the gradient of `strain`; both (n,4), one pass."""
+def advect(model: "Model", velocity_acceleration: Floats, strain: Floats) -> None:
+    """Places move with the velocities `velocity_acceleration`, F with the gradient of `strain`; both (n,4), one
+    pass."""
     g, p, basis = model.grid, model.particles, model.basis
     advect_all(
-        basis.fill, basis.support, basis.width, p.x, p.F, p.domain.ravel(), g.origin, 1.0 / g.dx, g.nx, g.ny, motion,
-        strain, model.dt, model.scheme.half(model.dt), model.lost, model.crossed,
+        basis.fill, basis.support, basis.domain_size, p.x, p.F, p.domain.ravel(), g.origin, 1.0 / g.dx, g.nx, g.ny,
+        velocity_acceleration,
+        strain, model.dt, model.scheme.half(model.dt), model.inverted, model.cell_crossings,
     )  # fmt: skip
 
 

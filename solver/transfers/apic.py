@@ -99,7 +99,7 @@ def give_affine(fill, K, W, start, x, F, m, affine, domain, origin, inv_dx, nx, 
 
 
 @kernel(inline=True)
-def gather_affine(K, lo, hi, ny, x, affine, ox, oy, inv_dx, dx, motion, table, node):
+def gather_affine(K, lo, hi, ny, x, affine, ox, oy, inv_dx, dx, velocity_acceleration, table, node):
     """B of particles lo ... hi-1: sum N v_i (x_i - x_p)^T about the mean place."""
     rows = np.float64(ny)
     per_row = 1.0 / rows  # a division of whole numbers for each neighbour takes longer than all else
@@ -115,8 +115,8 @@ def gather_affine(K, lo, hi, ny, x, affine, ox, oy, inv_dx, dx, motion, table, n
             N = table[at]
             rx = N * (column - px)
             ry = N * (np.float64(i) - column * rows - py)
-            ux = motion[i, 0]
-            uy = motion[i, 1]
+            ux = velocity_acceleration[i, 0]
+            uy = velocity_acceleration[i, 1]
             sx += rx
             sy += ry
             vx += N * ux
@@ -132,7 +132,7 @@ def gather_affine(K, lo, hi, ny, x, affine, ox, oy, inv_dx, dx, motion, table, n
 
 
 @kernel(nothing(Fill, i8, i8, i8, i8, F2, F3, F2, F1, F1, f8, i8, i8, F2))
-def take_chunk(fill, K, W, start, end, x, F, affine, domain, origin, inv_dx, nx, ny, motion):
+def take_chunk(fill, K, W, start, end, x, F, affine, domain, origin, inv_dx, nx, ny, velocity_acceleration):
     """The particles start ... end-1."""
     xs = x.reshape(-1)
     Fs = F.reshape(-1)
@@ -144,48 +144,52 @@ def take_chunk(fill, K, W, start, end, x, F, affine, domain, origin, inv_dx, nx,
             xs[2 * lo : 2 * hi], Fs[4 * lo : 4 * hi], domain[W * lo : W * hi],
             origin[0], origin[1], inv_dx, nx, ny, 0.0, nx - 1.0, 0.0, ny - 1.0, table, node,
         )  # fmt: skip
-        gather_affine(K, lo, hi, ny, x, affine, origin[0], origin[1], inv_dx, 1.0 / inv_dx, motion, table, node)
+        gather_affine(
+            K, lo, hi, ny, x, affine, origin[0], origin[1], inv_dx, 1.0 / inv_dx, velocity_acceleration, table, node
+        )
 
 
 @kernel(nothing(Fill, i8, i8, F2, F3, F2, F1, F1, f8, i8, i8, F2), parallel=True)
-def take_affine(fill, K, W, x, F, affine, domain, origin, inv_dx, nx, ny, motion):
+def take_affine(fill, K, W, x, F, affine, domain, origin, inv_dx, nx, ny, velocity_acceleration):
     """B of all particles."""
     for c in prange((x.shape[0] + CHUNK - 1) // CHUNK):
         start = c * CHUNK
         end = min(x.shape[0], start + CHUNK)
-        take_chunk(fill, K, W, start, end, x, F, affine, domain, origin, inv_dx, nx, ny, motion)
+        take_chunk(fill, K, W, start, end, x, F, affine, domain, origin, inv_dx, nx, ny, velocity_acceleration)
 
 
 @dataclass(frozen=True)
 class Apic(Transfer):
-    """No parameters; particles.B (P,4) is the state of its own: xx, xy, yx, yy, a velocity times a length."""
+    """No parameters; particles.affine_velocity (P,4) is the state of its own: xx, xy, yx, yy, a velocity times a
+    length."""
 
     def start(self, model: "Model", L: Gradient | None = None) -> None:
         """B = L D, by which p2g gives each node the velocity of the affine field; without L it is zero."""
         p, g = model.particles, model.grid
-        p.B = np.zeros((len(p), 4))
+        p.affine_velocity = np.zeros((len(p), 4))
         if L is not None:
             places = np.concatenate([g.nodes, np.zeros_like(g.nodes)], axis=1)
             affine_of(model, places)  # of v_i = x_i, B is D
-            p.B = (L(p.X) @ p.B.reshape(-1, 2, 2)).reshape(-1, 4)
+            p.affine_velocity = (L(p.X) @ p.affine_velocity.reshape(-1, 2, 2)).reshape(-1, 4)
 
     def give(self, model: "Model", momentum: Floats) -> None:
         """The affine part."""
         g, p, basis = model.grid, model.particles, model.basis
         give_affine(
-            basis.fill, basis.support, basis.width, model.slabs.start, p.x, p.F, p.m, p.B,
+            basis.fill, basis.support, basis.domain_size, model.slabs.start, p.x, p.F, p.m, p.affine_velocity,
             p.domain.ravel(), g.origin, 1.0 / g.dx, g.nx, g.ny, momentum,
         )  # fmt: skip
 
     def take(self, model: "Model") -> None:
         """B from the new velocities."""
-        affine_of(model, model.grid.motion)
+        affine_of(model, model.grid.velocity_acceleration)
 
 
-def affine_of(model: "Model", motion: Floats) -> None:
-    """Write particles.B from velocities, the first columns of `motion` (n,4)."""
+def affine_of(model: "Model", velocity_acceleration: Floats) -> None:
+    """Write particles.affine_velocity from velocities, the first columns of `velocity_acceleration` (n,4)."""
     g, p, basis = model.grid, model.particles, model.basis
     take_affine(
-        basis.fill, basis.support, basis.width, p.x, p.F, p.B, p.domain.ravel(), g.origin, 1.0 / g.dx,
-        g.nx, g.ny, motion,
+        basis.fill, basis.support, basis.domain_size, p.x, p.F, p.affine_velocity, p.domain.ravel(), g.origin,
+        1.0 / g.dx,
+        g.nx, g.ny, velocity_acceleration,
     )  # fmt: skip

@@ -41,9 +41,9 @@ class Fmpm(Transfer):
         if not (1 <= self.order <= HIGHEST and float(self.order).is_integer()):
             raise ValueError(f"order = {self.order} of FMPM must be a whole number from 1 to {HIGHEST}")
 
-    def filter(self, model: "Model", motion: Floats) -> None:
+    def filter(self, model: "Model", velocity_acceleration: Floats) -> None:
         """Replace v by w; at held nodes v is the wall's velocity."""
-        v, w = motion[:, :2].copy(), motion[:, :2]
+        v, w = velocity_acceleration[:, :2].copy(), velocity_acceleration[:, :2]
         for _ in range(int(self.order) - 1):
-            Aw = lumped(model, spread(model, collect(model, motion)[:, :2]))
+            Aw = lumped(model, spread(model, collect(model, velocity_acceleration)[:, :2]))
             w[:] = np.where(model.walls.held, v, v + w - Aw)

@@ -17,7 +17,7 @@ from test_speed import report
 
 from mpm_verify.solver._jit import use_threads
 from mpm_verify.solver.plugins import available, create
-from mpm_verify.solver.rate_law import RateLaw
+from mpm_verify.solver.rate_material import RateMaterial
 from mpm_verify.solver.state import Floats, Particles
 
 COUNT, ROUNDS = 65_536, 60
@@ -89,7 +89,7 @@ def test_stress_updates(benchmark, name: str) -> None:
     report(benchmark, f"{name}: million updates a second", speed(step, step.update))
     assert np.isfinite(step.p.sigma).all()
     assert not np.array_equal(step.p.sigma, step.sigma)
-    if not isinstance(step.law, RateLaw):
+    if not isinstance(step.law, RateMaterial):
         return
     benchmark.extra_info["its kernel alone"] = alone = speed(step, step.respond)
     print(f"its kernel alone: {alone:.1f}")

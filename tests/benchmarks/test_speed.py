@@ -43,7 +43,8 @@ def fused(model: Model) -> Callable[[], None]:
     held, cutoff = model.walls.held.astype(float), float(MASS_CUTOFF * p.m.max())
     kernel = getattr(yardstick, type(model.basis).__name__.lower())
     return lambda: kernel(
-        p.x, p.v, p.F, p.sigma, p.m, p.V0, p.b, p.domain, g.origin, 1.0 / g.dx, g.ny, g.mass, g.given, g.motion,
+        p.x, p.v, p.F, p.sigma, p.m, p.V0, p.b, p.domain, g.origin, 1.0 / g.dx, g.ny, g.mass, g.momentum_force,
+        g.velocity_acceleration,
         held, model.dt, cutoff, law.lam, law.mu,
     )  # fmt: skip
 

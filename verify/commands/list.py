@@ -11,7 +11,7 @@ from mpm_verify.solver.plugins import (
     LAYOUTS,
     MATERIALS,
     METHODS,
-    MISREADINGS,
+    NEGATIVE_CONTROLS,
     RATES,
     SMOOTHINGS,
     SOLUTIONS,
@@ -21,12 +21,12 @@ from mpm_verify.solver.plugins import (
 )
 from mpm_verify.verify.terminal.output import printing
 
-PACKAGES = (CASES, METHODS, TRANSFERS, SMOOTHINGS, LAYOUTS, SOLUTIONS, MATERIALS, RATES, MISREADINGS)
-REMARKS = {RATES: " (of the laws in rate form)", MISREADINGS: " (negative controls, taken as a rate)"}
+PACKAGES = (CASES, METHODS, TRANSFERS, SMOOTHINGS, LAYOUTS, SOLUTIONS, MATERIALS, RATES, NEGATIVE_CONTROLS)
+REMARKS = {RATES: " (of the laws in rate form)", NEGATIVE_CONTROLS: " (negative controls, taken as a rate)"}
 
 
 def list_plugins() -> None:
-    """List cases, methods, transfers, smoothings, layouts, solutions, materials, rates, misreadings
+    """List cases, methods, transfers, smoothings, layouts, solutions, materials, rates, negative controls
     and studies with a line about each."""
     with printing():
         for package in PACKAGES:

@@ -8,8 +8,8 @@ from typing import Annotated, get_args
 
 import typer
 
-from mpm_verify.solver.orders import Stress
 from mpm_verify.solver.plugins import LAYOUTS, MATERIALS, METHODS, SOLUTIONS, TRANSFERS
+from mpm_verify.solver.stress_update import Stress
 from mpm_verify.verify.options.choices import choices, completion, integers
 from mpm_verify.verify.options.common import Json
 

@@ -25,7 +25,7 @@ def show_overview(record: Record, report: Path) -> None:
     out.print(f"{found.caption}\n")
     out.print(table)
     for finding in record.findings:
-        if finding.declared.judged and finding.verdict.outcome != "PASS":
+        if finding.plan.judged and finding.verdict.outcome != "PASS":
             out.print(sentence(finding, several=True))
     out.print(f"\n{summary(record)}")
     out.print("\nVerdicts, error against cost, where orders fall and why, and how it was made:")

@@ -9,7 +9,7 @@ from rich.table import Table
 from rich.text import Text
 
 from mpm_verify.cases.harness.axes import middle
-from mpm_verify.cases.harness.study import Declared, Study
+from mpm_verify.cases.harness.study import QuantityPlan, Study
 from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.cases.judging.stall import Stall
 
@@ -31,17 +31,17 @@ def show(study: Study, found: Sequence[Finding], report: Path, console: Console 
     if not out.is_terminal:
         out.width = max(out.width, 100)
     out.print(f"\n[bold]{study.title}[/bold]")
-    out.print(errors_table([f for f in found if f.declared.judged or (f.declared.quantity, f.declared.norm) == ALWAYS]))
+    out.print(errors_table([f for f in found if f.plan.judged or (f.plan.quantity, f.plan.norm) == ALWAYS]))
     if most := max((len(level.errors) for f in found for level in f.levels), default=1) - 1:
         out.print(f"errors are geometric means of up to {most + 1} runs with the particles elsewhere in their cells")
-    several = len({finding.declared.solution for finding in found}) > 1
+    several = len({finding.plan.solution for finding in found}) > 1
     for finding in found:
-        if finding.declared.judged:
+        if finding.plan.judged:
             out.print(sentence(finding, several))
     for finding in found:
         if finding.stall:
             out.print(stall(finding, finding.stall, several))
-    if not any(f.declared.judged for f in found):
+    if not any(f.plan.judged for f in found):
         out.print("INCONCLUSIVE: nothing here has a registered expectation, so nothing is judged.")
     out.print("\nMore quantities and norms, figures, and how it was made:")
     out.print(f"report: {report}", soft_wrap=True)
@@ -50,7 +50,7 @@ def show(study: Study, found: Sequence[Finding], report: Path, console: Console 
 def errors_table(found: Sequence[Finding]) -> Table:
     """Error, local order, and faces of cells that a particle passed, at each cell count; a failed run by its reason."""
     table = Table(box=None, pad_edge=False, header_style="dim")
-    several = len({finding.declared.solution for finding in found}) > 1
+    several = len({finding.plan.solution for finding in found}) > 1
     for name in (*(("solution",) if several else ()), "method", "per cell", "quantity", "cells"):
         table.add_column(name, justify="right" if name in ("per cell", "cells") else "left")
     for name in ("error", "order", "crossings"):
@@ -58,14 +58,14 @@ def errors_table(found: Sequence[Finding]) -> Table:
     table.add_column("")
     for finding in found:
         for number, row in enumerate(rows(finding)):
-            solution = finding.declared.solution if number == 0 else ""
+            solution = finding.plan.solution if number == 0 else ""
             table.add_row(*((solution,) if several else ()), *row)
     return table
 
 
 def rows(finding: Finding) -> Iterator[tuple[str, ...]]:
     """A row a level; names once a block."""
-    d, orders = finding.declared, iter(finding.verdict.local_orders)
+    d, orders = finding.plan, iter(finding.verdict.local_orders)
     first, earlier = (d.method, str(d.ppc), f"{d.quantity} {d.norm}"), False
     for level, passed in zip_longest(finding.levels, finding.crossings):
         cells, faces = f"{1 / level.h:.0f}", "" if passed is None else f"{passed:.1f}"
@@ -85,7 +85,7 @@ def order(local: float | None) -> str:
 
 def sentence(finding: Finding, several: bool = False) -> Text:
     """The verdict in words."""
-    d, v = finding.declared, finding.verdict
+    d, v = finding.plan, finding.verdict
     stalls = d.expectation is not None and d.expectation.stall is not None
     expected = f"order {v.expected:g}" if v.expected is not None else "a stall" if stalls else "no convergence"
     text = Text(f"\n{v.outcome}", STYLES[v.outcome])
@@ -93,7 +93,7 @@ def sentence(finding: Finding, several: bool = False) -> Text:
     return text
 
 
-def named(declared: Declared, several: bool) -> str:
+def named(declared: QuantityPlan, several: bool) -> str:
     """What a sentence is about, with its solution if the study has several."""
     solution = f" on {declared.solution}" if several else ""
     return f"{declared.method}{solution}, {declared.ppc} per cell, {declared.quantity} in {declared.norm}"
@@ -102,6 +102,6 @@ def named(declared: Declared, several: bool) -> str:
 def stall(finding: Finding, found: Stall, several: bool = False) -> Text:
     """Where the order falls and what explains it; what does not is in the report."""
     text = Text("\nSTALL", "bold")
-    text.append(f"  {named(finding.declared, several)}: {found.where}. ", "not bold default")
+    text.append(f"  {named(finding.plan, several)}: {found.where}. ", "not bold default")
     text.append(" ".join(found.reasons), "not bold default")
     return text

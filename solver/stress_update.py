@@ -19,7 +19,7 @@ from typing import Literal, get_args
 Stress = Literal["usl", "musl", "usf"]
 
 
-def check_stress(word: str) -> None:
+def check_stress_update(word: str) -> None:
     """Raise ValueError for a word that is no order."""
     if word not in get_args(Stress):
         raise ValueError(f"no stress order {word!r}; choose from {', '.join(get_args(Stress))}")

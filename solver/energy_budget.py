@@ -30,36 +30,36 @@ TRANSFER, CONVECTION, WALLS, ON_GRID, GIVEN, LATE, IMPULSE, SUMS = 0, 1, 2, 3, 4
 
 
 @kernel(nothing(F1, F2, F2, F2, F1, f8, f8, F1))
-def between_steps(mass, given, after, undamped, g, dt, cutoff, sums):
+def between_steps(mass, momentum_force, after, undamped, g, dt, cutoff, sums):
     """Adds what the velocities `after` (n,2) of the last step lose until this one to LATE, and half the work of the new
     inner forces on them to CONVECTION; keeps the forces in `undamped` (n,2)."""
     for i in range(mass.shape[0]):
         if mass[i] > cutoff:
             for a in range(2):
-                f = given[i, 2 + a]
+                f = momentum_force[i, 2 + a]
                 undamped[i, a] = f
-                sums[LATE] += 0.5 * dt * f * (after[i, a] - given[i, a] / mass[i])
+                sums[LATE] += 0.5 * dt * f * (after[i, a] - momentum_force[i, a] / mass[i])
                 sums[CONVECTION] += 0.5 * dt * (f - mass[i] * g[a]) * after[i, a]
 
 
 @kernel(nothing(F1, F2, F2, F2, F2, flag[:, ::1], F1, f8, f8, F1))
-def in_step(mass, given, motion, undamped, after, held, g, dt, cutoff, sums):
+def in_step(mass, momentum_force, velocity_acceleration, undamped, after, held, g, dt, cutoff, sums):
     """Adds all that the step does on the grid, writes the kinetic energy after it to ON_GRID, keeps u in `after`."""
     sums[ON_GRID] = 0.0
     for i in range(mass.shape[0]):
         for a in range(2):
-            after[i, a] = motion[i, a]
+            after[i, a] = velocity_acceleration[i, a]
         if mass[i] > cutoff:
             for a in range(2):
-                u = motion[i, a]
-                change = dt * motion[i, 2 + a]
-                mean = 0.5 * (given[i, a] / mass[i] + u)
-                impulse = dt * (mass[i] * motion[i, 2 + a] - given[i, 2 + a])
+                u = velocity_acceleration[i, a]
+                change = dt * velocity_acceleration[i, 2 + a]
+                mean = 0.5 * (momentum_force[i, a] / mass[i] + u)
+                impulse = dt * (mass[i] * velocity_acceleration[i, 2 + a] - momentum_force[i, 2 + a])
                 sums[ON_GRID] += 0.5 * mass[i] * u * u
                 sums[TRANSFER] += 0.5 * mass[i] * change * change
-                sums[GIVEN] += dt * given[i, 2 + a] * mean
+                sums[GIVEN] += dt * momentum_force[i, 2 + a] * mean
                 sums[CONVECTION] += 0.5 * dt * (undamped[i, a] - mass[i] * g[a]) * u
-                sums[IMPULSE + a] += dt * (given[i, 2 + a] - undamped[i, a])
+                sums[IMPULSE + a] += dt * (momentum_force[i, 2 + a] - undamped[i, a])
                 if held[i, a]:
                     sums[WALLS] += impulse * mean
                     sums[IMPULSE + a] += impulse
@@ -107,13 +107,14 @@ class Budget:
         if not len(self.after):
             self.after, self.undamped = np.zeros((len(g.mass), 2)), np.zeros((len(g.mass), 2))
         dt = model.dt if model.steps else 0.0  # nothing lies between the start and the first step
-        between_steps(g.mass, g.given, self.after, self.undamped, self.gravity, dt, model.cutoff, self.sums)
+        between_steps(g.mass, g.momentum_force, self.after, self.undamped, self.gravity, dt, model.cutoff, self.sums)
 
     def end(self, model: "Model") -> None:
         """After the equation of motion of each step."""
         g = model.grid
         in_step(
-            g.mass, g.given, g.motion, self.undamped, self.after, model.walls.held, self.gravity, model.dt,
+            g.mass, g.momentum_force, g.velocity_acceleration, self.undamped, self.after, model.walls.held,
+            self.gravity, model.dt,
             model.cutoff, self.sums,
         )  # fmt: skip
         self.v = model.particles.v.copy()
@@ -132,7 +133,7 @@ class Budget:
         """
         p, sums = model.particles, self.sums
         done, transfer = work(p), float(sums[TRANSFER] + sums[LATE])
-        if model.scheme.transfer.share != 1.0 or p.B.size:
+        if model.scheme.transfer.share != 1.0 or p.affine_velocity.size:
             transfer = float(sums[GIVEN] + sums[WALLS] + sums[LATE]) - (kinetic(p) - self.before)
         return {
             "kinetic": kinetic(p),

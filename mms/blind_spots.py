@@ -37,7 +37,7 @@ SEEN_BY = {  # solutions of the library that do see it
 
 
 @dataclass(frozen=True)
-class Spot:
+class BlindSpot:
     """One thing a study of the solution cannot see (`blind`), or does see, in one or two sentences."""
 
     key: str
@@ -46,23 +46,23 @@ class Spot:
 
 
 ALWAYS = (
-    Spot(
+    BlindSpot(
         "orders",
         "Orders alone let defects pass. In a probe apart from this program, of 46 defects planted in a CPDI code, "
         "the order of the displacement caught 33, the orders of all quantities 36, and all checks together, "
         "exactness and physics among them, 44.",
         True,
     ),
-    Spot("constants", "A wrong constant leaves the order as it is; only a recorded magnitude sees it.", True),
+    BlindSpot("constants", "A wrong constant leaves the order as it is; only a recorded magnitude sees it.", True),
 )
 
 
-def spot(key: str, blind: bool, cannot: str, can: str) -> Spot:
+def spot(key: str, blind: bool, cannot: str, can: str) -> BlindSpot:
     """The sentence that applies; of what is blind, with the solutions of the library that see it."""
-    return Spot(key, f"{cannot} Seen by {', '.join(SEEN_BY[key])}." if blind else can, blind)
+    return BlindSpot(key, f"{cannot} Seen by {', '.join(SEEN_BY[key])}." if blind else can, blind)
 
 
-def shear(n: Numbers) -> Spot:
+def shear(n: Numbers) -> BlindSpot:
     """Off-diagonal components of F."""
     how = "F is diagonal everywhere" if n["shear"] == 0 else f"F is all but diagonal (within {figure(n['shear'])})"
     return spot(
@@ -73,7 +73,7 @@ def shear(n: Numbers) -> Spot:
     )
 
 
-def rotation(n: Numbers) -> Spot:
+def rotation(n: Numbers) -> BlindSpot:
     """R of the polar decomposition F = R U; F is its own transpose where R = I."""
     angle = f"{figure(n['rotation_deg'])}°"
     how = "Nothing turns" if n["rotation_deg"] < ROUND else f"The material turns by {angle} at most"
@@ -87,7 +87,7 @@ def rotation(n: Numbers) -> Spot:
     )
 
 
-def order(n: Numbers) -> Spot:
+def order(n: Numbers) -> BlindSpot:
     """Whether the order of factors matters in the update of F."""
     return spot(
         "order",
@@ -97,7 +97,7 @@ def order(n: Numbers) -> Spot:
     )
 
 
-def spin(n: Numbers) -> Spot:
+def spin(n: Numbers) -> BlindSpot:
     """Skew part of L."""
     return spot(
         "spin",
@@ -107,7 +107,7 @@ def spin(n: Numbers) -> Spot:
     )
 
 
-def volume(n: Numbers) -> Spot:
+def volume(n: Numbers) -> BlindSpot:
     """det F."""
     low, high = n["J_min"], n["J_max"]
     change = max(1 - low, high - 1)
@@ -120,7 +120,7 @@ def volume(n: Numbers) -> Spot:
     )
 
 
-def gradient(n: Numbers) -> Spot:
+def gradient(n: Numbers) -> BlindSpot:
     """Change of F over the body."""
     return spot(
         "gradient",
@@ -130,7 +130,7 @@ def gradient(n: Numbers) -> Spot:
     )
 
 
-def start(n: Numbers) -> Spot:
+def start(n: Numbers) -> BlindSpot:
     """Acceleration at t = 0: what the half-step start corrects."""
     part = percent(n["start_acceleration"])
     how = "out acceleration" if n["start_acceleration"] < ROUND else f" {part} of the largest acceleration"
@@ -142,7 +142,7 @@ def start(n: Numbers) -> Spot:
     )
 
 
-def velocity(n: Numbers) -> Spot:
+def velocity(n: Numbers) -> BlindSpot:
     """Velocity at t = 0."""
     part = percent(n["start_velocity"])
     how = "out velocity" if n["start_velocity"] < ROUND else f" {part} of the largest velocity"
@@ -154,7 +154,7 @@ def velocity(n: Numbers) -> Spot:
     )
 
 
-def mirror(n: Numbers) -> Spot:
+def mirror(n: Numbers) -> BlindSpot:
     """u_x(X, Y) = u_y(Y, X)?"""
     return spot(
         "mirror",
@@ -164,7 +164,7 @@ def mirror(n: Numbers) -> Spot:
     )
 
 
-def amplitude(n: Numbers) -> Spot:
+def amplitude(n: Numbers) -> BlindSpot:
     """Strain and stress."""
     size = (
         f"Components of F {MINUS} I reach {figure(n['strain'])}, stresses {percent(n['stress'])} of rho0 c² "
@@ -178,7 +178,7 @@ def amplitude(n: Numbers) -> Spot:
     )
 
 
-def crossing(n: Numbers) -> Spot:
+def crossing(n: Numbers) -> BlindSpot:
     """Displacement in cells; of 4 particles in a cell, each is a quarter of a cell from its face."""
     cells = figure(FINEST * n["displacement"])
     return spot(
@@ -191,7 +191,7 @@ def crossing(n: Numbers) -> Spot:
     )
 
 
-def walls(n: Numbers) -> Spot:
+def walls(n: Numbers) -> BlindSpot:
     """What the boundary does: held, sliding, free or prescribed."""
     moves, through, pulls = (n[f"edge_{what}"] > ROUND for what in ("motion", "normal_motion", "traction"))
     if n["edge_free"] and pulls:
@@ -211,7 +211,7 @@ def walls(n: Numbers) -> Spot:
     return spot("walls", bool(n["edge_free"]) or not (moves and pulls and not through), cannot, can)
 
 
-def load(n: Numbers) -> Spot:
+def load(n: Numbers) -> BlindSpot:
     """Body force against inertia."""
     return spot(
         "load",
@@ -222,7 +222,7 @@ def load(n: Numbers) -> Spot:
     )
 
 
-def stress(n: Numbers) -> Spot:
+def stress(n: Numbers) -> BlindSpot:
     """Divergence of the stress against body force and inertia."""
     part = percent(n["stress_force"])
     return spot(
@@ -234,7 +234,7 @@ def stress(n: Numbers) -> Spot:
     )
 
 
-def plane(n: Numbers) -> Spot:
+def plane(n: Numbers) -> BlindSpot:
     """One-dimensional motion."""
     still = n["weaker_component"] <= FAINT
     return spot(
@@ -258,7 +258,7 @@ def figure(value: float) -> str:
     return f"{float(f'{value:.2g}'):.0f}" if abs(value) >= 10 else f"{value:.2g}"
 
 
-RULES: tuple[Callable[[Numbers], Spot], ...] = (
+RULES: tuple[Callable[[Numbers], BlindSpot], ...] = (
     shear, rotation, order, spin, volume, gradient, start, velocity, mirror, amplitude, crossing, walls, load, stress,
     plane,
 )  # fmt: skip

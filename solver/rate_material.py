@@ -8,16 +8,17 @@ import numpy as np
 
 from mpm_verify.solver._jit import Function
 from mpm_verify.solver.objective import Rate, integrate
-from mpm_verify.solver.plugins import MISREADINGS, RATES, available, load
+from mpm_verify.solver.plugins import NEGATIVE_CONTROLS, RATES, available, load
 from mpm_verify.solver.state import Floats, Particles
 
 
 @dataclass(frozen=True)
-class RateLaw:
+class RateMaterial:
     """`rate`: the objective rate, a file of solver/rates; raises ValueError for another.
 
     A subclass has `respond`, a kernel of solver.objective.RESPOND, its `constants` (k,), and in `memory` the names of
-    what it keeps of the path, one column of Particles.history each. Negative controls (solver/misreadings) are taken as
+    what it keeps of the path,
+    one column of Particles.history each. Negative controls (solver/negative_controls) are taken as
     a rate too: they are there to be seen failing.
     """
 
@@ -43,22 +44,23 @@ class RateLaw:
             particles.history = self.initial(particles.sigma)
             particles.work = np.zeros((len(particles), 2))
 
-    def update(self, particles: Particles, dt: float, felt: Floats | None = None) -> None:
+    def update(self, particles: Particles, dt: float, F_smoothed: Floats | None = None) -> None:
         """Write particles.sigma, history and work, from F_old and the new F; the step's length does not matter.
 
-        The strain is that of the way from F_old to `felt` (P,2,2), if it is given, and the rotation that of F.
+        The strain is that of the way from F_old to `F_smoothed` (P,2,2), if it is given, and the rotation that of F.
         Raises ValueError for particles that the law has not started: there is no F to go on from.
         """
         frame, p = objective(self.rate), particles
         if p.F_old.shape[1:] != (4,) or p.history.shape[1:] != (len(self.memory),):
             raise ValueError(f"{type(self).__name__} must start the particles before it updates them")
-        felt = p.F if felt is None else felt
+        F_smoothed = p.F if F_smoothed is None else F_smoothed
         integrate(
-            frame.unrotate, frame.rotate, self.respond, self.constants(), p.F_old, felt, p.F, p.sigma, p.history, p.work
+            frame.unrotate, frame.rotate, self.respond, self.constants(), p.F_old, F_smoothed, p.F, p.sigma,
+            p.history, p.work
         )  # fmt: skip
 
 
 @cache
 def objective(name: str) -> type[Rate]:
     """The plug-in of a rate, looked for once a process. Raises ValueError that lists the rates for another name."""
-    return cast("type[Rate]", load(MISREADINGS if name in available(MISREADINGS) else RATES, name))
+    return cast("type[Rate]", load(NEGATIVE_CONTROLS if name in available(NEGATIVE_CONTROLS) else RATES, name))
