@@ -18,8 +18,6 @@ from mpm_verify.solver.transfer import g2p, p2g
 if TYPE_CHECKING:
     from mpm_verify.solver.rate_material import RateMaterial
 
-    pass
-
 __all__ = ["Load", "Material", "Model", "RunFailed", "Scheme", "advance", "check_time_step"]
 
 

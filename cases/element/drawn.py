@@ -14,8 +14,6 @@ from mpm_verify.solver.material.ubcsand import Ubcsand
 if TYPE_CHECKING:
     from mpm_verify.cases.element.exam import ElementStudy
 
-    pass
-
 MARKED = 5e3  # Pa, the confining stress of the reference tables
 DRAWN = 400  # points of a curve that are kept
 
