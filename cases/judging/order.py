@@ -13,8 +13,8 @@ from functools import cached_property
 
 import numpy as np
 
-from mpm_verify.cases.judging.fit import Contamination, Fit, contamination
-from mpm_verify.cases.judging.records import Expectation, Level, Outcome, Verdict
+from mpm_verify.cases.judging.fit import Fit, contamination
+from mpm_verify.cases.judging.records import Contamination, Expectation, Level, Outcome, Verdict
 
 __all__ = ["Expectation", "Level", "Outcome", "Quantity", "Verdict", "judge", "judge_family"]
 

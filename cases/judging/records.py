@@ -2,10 +2,7 @@
 
 from dataclasses import dataclass
 from enum import StrEnum
-
-import numpy as np
-
-from mpm_verify.cases.judging.fit import Contamination
+from math import isfinite
 
 
 class Outcome(StrEnum):
@@ -73,7 +70,21 @@ class Level:
         """Why this level has no error to judge; empty if it has one."""
         if self.failed or not self.errors:
             return self.failed or "no error"
-        return "" if np.isfinite(self.errors).all() else "an error that is not finite"
+        return "" if all(map(isfinite, self.errors)) else "an error that is not finite"
+
+
+@dataclass(frozen=True, slots=True)
+class Contamination:
+    """Shares of the finest error: lower-order term, floor, and the largest total that the data do not refute."""
+
+    lower: float
+    floor: float
+    most: float
+
+    @property
+    def total(self) -> float:
+        """Share of the finest error that is not of the expected order."""
+        return self.lower + self.floor
 
 
 @dataclass(frozen=True)

@@ -41,7 +41,7 @@ def _cause(stall: Stall) -> str:
 
 
 def _told(record: Record, found: Finding, stall: Stall) -> Told:
-    title = words.series(found.plan) + (f", {found.plan.solution}" if len(record.solutions) > 1 else "")
+    title = record.label(found.plan.run)
     sentences = tuple(words.prose(_names(text)) for text in stall.why)
     return Told(title, words.prose(stall.where), _cause(stall), sentences)
 

@@ -2,8 +2,10 @@
 
 import math
 import re
+from typing import Any
 
-from mpm_verify.cases.harness.study import QuantityPlan, Run
+from mpm_verify.cases.harness.study import QuantityPlan
+from mpm_verify.cases.mms.run import Run
 
 METHODS = {
     "mpm": "MPM",
@@ -34,7 +36,7 @@ def quantity(name: str) -> str:
     return QUANTITIES.get(name, name)
 
 
-def series(of: Run | QuantityPlan) -> str:
+def series(of: Any) -> str:
     """Method and particle count: `CPDI, 4 per cell`."""
     return f"{method(of.method)}, {of.ppc} per cell"
 
@@ -83,7 +85,7 @@ def cell_size(cells: int) -> str:
     return f"1/{cells}"
 
 
-def expected(declared: QuantityPlan) -> str:
+def expected(declared: QuantityPlan[Any]) -> str:
     """What was registered: an order with its band, `diverges`, or a dash."""
     e = declared.expectation
     if e is None:
