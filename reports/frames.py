@@ -6,11 +6,12 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from mpm_verify.cases.harness.axes import NOT_RUN, level, middle, replicated
+from mpm_verify.cases.harness.axes import level, middle, replicated
 from mpm_verify.cases.harness.series import Series, collect
 from mpm_verify.cases.harness.store import Arrays, Store
 from mpm_verify.cases.harness.study import QuantityPlan, Result, Run, Study
 from mpm_verify.cases.harness.verdicts import Finding, findings
+from mpm_verify.solver.failure import FailureKind
 
 
 @dataclass(frozen=True)
@@ -69,7 +70,7 @@ class Record:
     def failed(self, series: Series) -> list[Run]:
         """The levels of a series that failed, coarse to fine."""
         levels = [(runs[0], level(runs, self.results, "u", "rms")) for runs in series.replicates]
-        return [run for run, (errors, why) in levels if not errors and NOT_RUN not in why]
+        return [run for run, (_, failure, _) in levels if failure and failure.kind is not FailureKind.NOT_RUN]
 
     @property
     def replicates(self) -> int:

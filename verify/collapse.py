@@ -57,6 +57,7 @@ def conduct(study: "ColumnStudy", folder: Path, jobs: int | None, threads: int, 
 
 def document(collapse: "ColumnAnalysis", made: Path) -> str:
     """One JSON document: runs with their numbers, the paper's sentences, the checks; null for what is not finite."""
+    from mpm_verify.reports.sentences import failures
     from mpm_verify.verify.examine import finite, told
 
     examination, results = collapse.examination, collapse.results
@@ -67,6 +68,7 @@ def document(collapse: "ColumnAnalysis", made: Path) -> str:
             "run": finite(asdict(run)), "status": result.status if result else "not run",
             "values": finite(result.values) if result else {},
             "failure": asdict(result.failure) if result and result.failure else None,
+            "reason": failures.failure(result.failure) if result and result.failure else "",
         })  # fmt: skip
     content = {
         "version": VERSION,

@@ -118,10 +118,13 @@ def show(examination: Examination, page: Path) -> None:
 
 def sentence(check: Check) -> str:
     """What was found, and what it is held against."""
+    from mpm_verify.reports.sentences import failures
+
     within = f" within {check.within:.3g}" if check.within else ""
     way = f"{check.way} " if check.way.startswith("at") else ""
     relative = " of it" if check.way == "relative" else ""
-    return f"{check.name} is {check.found:.8g}, expected {way}{check.expected:.8g}{within}{relative} ({check.source})"
+    name = failures.check(check.name, check.failure)
+    return f"{name} is {check.found:.8g}, expected {way}{check.expected:.8g}{within}{relative} ({check.source})"
 
 
 def closest(checks: list[Check]) -> str:

@@ -7,7 +7,8 @@ from functools import cache
 from math import inf, sqrt
 from typing import Literal, get_args
 
-from mpm_verify.cases.harness.study import FORMAT, Failure, Status
+from mpm_verify.cases.harness.study import FORMAT, Status
+from mpm_verify.solver.failure import Failure
 from mpm_verify.solver.layout import per_side
 from mpm_verify.solver.sources import TOP, digest
 

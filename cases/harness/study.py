@@ -9,10 +9,11 @@ from typing import Literal
 
 from mpm_verify.cases.judging.records import Expectation
 from mpm_verify.mms.blind_spots import BlindSpot
+from mpm_verify.solver.failure import Failure
 from mpm_verify.solver.plugins import identity
 from mpm_verify.solver.sources import TOP, digest
 
-FORMAT = 1  # of study.json and of every Result; a reader refuses another number
+FORMAT = 2  # of study.json and of every Result; a reader refuses another number
 QUANTITIES = ("u", "v", "F", "sigma")
 NORMS = ("rms", "max", "final", "printed")
 Status = Literal["finished", "failed"]
@@ -79,21 +80,6 @@ def _digest(run: Run, sources: str) -> str:
 
 
 @dataclass(frozen=True)
-class Failure:
-    """Why a run could not go on: a result, not a crash. `particle` is its index in the initial layout, -1 if none."""
-
-    reason: str
-    step: int = 0
-    particle: int = -1
-    cell: tuple[int, int] | None = None
-
-    def __str__(self) -> str:
-        where = f", particle {self.particle}" if self.particle >= 0 else ""
-        where += f" in cell {self.cell}" if self.cell else ""
-        return f"{self.reason} at step {self.step}{where}"
-
-
-@dataclass(frozen=True)
 class Packed:
     """How well particles were packed. `fewest` in a cell that the body filled, over the run, and such a cell.
 
@@ -154,6 +140,7 @@ class QuantityPlan:
     norm: str
     judged: bool
     expectation: Expectation | None
+    multiple: int = 1  # of cells that fill the body of the solution
 
     def __post_init__(self) -> None:
         if self.quantity not in QUANTITIES or self.norm not in NORMS:

@@ -12,7 +12,7 @@ import numpy as np
 from mpm_verify.cases.harness.environment import environment
 from mpm_verify.cases.harness.memory import forget_peak, peak_memory
 from mpm_verify.cases.harness.store import Arrays
-from mpm_verify.cases.harness.study import QUANTITIES, Failure, Result, Run
+from mpm_verify.cases.harness.study import QUANTITIES, Result, Run
 from mpm_verify.cases.mms.gaps import LOOKS, Gaps
 from mpm_verify.cases.mms.norms import Norms, compare, new_shares
 from mpm_verify.cases.mms.packing import Packing
@@ -20,10 +20,11 @@ from mpm_verify.mms.audit import audit
 from mpm_verify.mms.blind_spots import BlindSpot
 from mpm_verify.mms.manufacture import Manufactured, manufacture
 from mpm_verify.solver.boundary import box, moving
+from mpm_verify.solver.failure import Failure, FailureKind, RunFailed
 from mpm_verify.solver.layout import CENTRED, Layout, parallelograms
 from mpm_verify.solver.plugins import LAYOUTS, MATERIALS, METHODS, SOLUTIONS, TRANSFERS, create, load
 from mpm_verify.solver.state import Floats, Grid, Particles
-from mpm_verify.solver.step import Model, RunFailed, Scheme, advance, check_time_step
+from mpm_verify.solver.step import Model, Scheme, advance, check_time_step
 
 PIECE = 4096  # particles
 COUNTED = 40_000  # particles: the outline of a uniform layout with more takes as long as the run's first steps
@@ -123,7 +124,7 @@ def execute(run: Run, tick: Callable[[float], None] = lambda share: None) -> tup
     failure, started, used = None, time.perf_counter(), time.process_time()
     try:
         if not run.force:
-            check_time_step(model, " (--force runs it all the same)")
+            check_time_step(model)
         if comparison.packing:
             comparison.packing.begin(model, refuse=run.layout != "uniform")
         for step in range(steps):
@@ -134,12 +135,12 @@ def execute(run: Run, tick: Callable[[float], None] = lambda share: None) -> tup
                     comparison.packing.look(model)
             tick((step + 1) / steps)
         comparison(model.particles, model.time)
-    except RunFailed as reason:
-        failure = Failure(reason.reason, reason.step, reason.particle, reason.cell)
+    except RunFailed as ended:
+        failure = ended.failure
     wall, cpu = time.perf_counter() - started, time.process_time() - used
     errors, scale = comparison.norms.errors(), magnitude(comparison.exact, model.particles, steps * model.dt)
     if not failure and not np.isfinite([list(norms.values()) for norms in errors.values()]).all():
-        failure = Failure("an error that is not finite", model.steps)
+        failure = Failure(FailureKind.ERROR_NOT_FINITE, model.steps)
     arrays = snapshot(run, model, comparison)
     result = Result(
         run=run,

@@ -102,8 +102,9 @@ def build(sweep: Sweep, command: str, name: str) -> Study:
     solution = canonical(SOLUTIONS, sweep.solution)
     material = canonical(MATERIALS, sweep.material or create(SOLUTIONS, solution).material)
     transfer = canonical(TRANSFERS, sweep.transfer)
+    multiple = multiple_of(sweep.solution)
     declared = tuple(
-        declare(sweep, (method, solution, material), ppc, quantity, norm)
+        declare(sweep, (method, solution, material), ppc, quantity, norm, multiple)
         for method in sweep.methods
         for ppc in sorted(set(sweep.ppc))
         for quantity in QUANTITIES
@@ -147,13 +148,25 @@ def offsets(replicates: int) -> list[Offset]:
     return [CENTRED, *((float(a), float(b)) for a, b in places)]
 
 
-def declare(sweep: Sweep, names: tuple[str, str, str], ppc: int, quantity: str, norm: str) -> QuantityPlan:
+def multiple_of(solution: str) -> int:
+    """Number of cells of the width whose multiples fill the body; 1 for those of this package, which are square."""
+    if not is_file(solution):
+        return 1
+    from mpm_verify.mms.check import sides  # see Sweep.check
+
+    ratio = sides(create(SOLUTIONS, solution))
+    return ratio.denominator if ratio else 1
+
+
+def declare(
+    sweep: Sweep, names: tuple[str, str, str], ppc: int, quantity: str, norm: str, multiple: int = 1
+) -> QuantityPlan:
     """A quantity with its registered expectation, of FLIP and update-stress-last alone; u in rms is judged."""
     usual = sweep.courant == Sweep.courant and sweep.staggered
     scheme = (canonical(TRANSFERS, sweep.transfer), sweep.stress, canonical(LAYOUTS, sweep.layout))
     expectation = expected(*names, ppc, quantity, norm, usual) if scheme == ("flip", "usl", "uniform") else None
     judged = expectation is not None and (quantity, norm) == JUDGED
-    return QuantityPlan(names[0], names[1], ppc, quantity, norm, judged, expectation)
+    return QuantityPlan(names[0], names[1], ppc, quantity, norm, judged, expectation, multiple)
 
 
 def converges(declared: QuantityPlan) -> bool:

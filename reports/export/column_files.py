@@ -9,6 +9,7 @@ from mpm_verify.cases.column.exam import ColumnAnalysis
 from mpm_verify.cases.column.exam import curves as read_curves
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.reports.export.vtk import write_series
+from mpm_verify.reports.sentences import failures
 
 
 def tables(collapse: ColumnAnalysis, store: Store, folder: Path) -> None:
@@ -18,7 +19,7 @@ def tables(collapse: ColumnAnalysis, store: Store, folder: Path) -> None:
         result = collapse.results.get(run.digest)
         if result:
             parameters = {name: getattr(run, name) for name in collapse.study.axes}
-            failure = result.failure.reason if result.failure else ""
+            failure = failures.cause(result.failure) if result.failure else ""
             rows.append(
                 {"digest": run.digest, **parameters, "status": result.status, "failure": failure, **result.values}
             )

@@ -9,9 +9,12 @@ from typing import Any
 from mpm_verify.cases.harness.axes import particle_axes, position_axes, time_axes
 from mpm_verify.cases.harness.study import NORMS, QUANTITIES, Result, Run, Study
 from mpm_verify.cases.harness.verdicts import Finding
-from mpm_verify.cases.judging.stall import Stall
+from mpm_verify.cases.judging.records import Ended
+from mpm_verify.cases.judging.stall import Cause, Stall
+from mpm_verify.reports.sentences import commands, failures, stalls
+from mpm_verify.solver.failure import Failure
 
-VERSION = 2
+VERSION = 3
 SCHEMA = Path(__file__).with_name("schema.json")
 
 
@@ -20,7 +23,7 @@ def document(study: Study, found: Sequence[Finding], results: Mapping[str, Resul
     content = {
         "version": VERSION,
         "study": study.name,
-        "verdicts": [verdict(f) for f in found if f.plan.judged],
+        "verdicts": [verdict(study, f) for f in found if f.plan.judged],
         "shown": [shown(f) for f in found if not f.plan.judged],
         "axes": axes(study.runs, results),
         "runs": [row(results[run.digest]) for run in study.runs if run.digest in results],
@@ -29,15 +32,19 @@ def document(study: Study, found: Sequence[Finding], results: Mapping[str, Resul
     return json.dumps(content, indent=1, allow_nan=False)
 
 
-def verdict(finding: Finding) -> dict[str, Any]:
-    """A judged quantity."""
-    expectation = finding.plan.expectation
+def verdict(study: Study, finding: Finding) -> dict[str, Any]:
+    """A judged quantity; `code`, `numbers`, `failed` and `wanted` are what `reason` says in words."""
+    expectation, r = finding.plan.expectation, finding.verdict.reason
     order = expectation.order if expectation else None
     return {
         **shown(finding),
         "expected": expectation.kind if expectation and order is None else order,
         "verdict": str(finding.verdict.outcome),
-        "reason": finding.verdict.reason,
+        "code": str(r.code),
+        "numbers": {name: list(n) if isinstance(n, tuple) else n for name, n in r.numbers.items()},
+        "failed": [ended(end) for end in r.failed],
+        "wanted": {**asdict(r.wanted), "command": commands.command(study, finding)} if r.wanted else None,
+        "reason": commands.reason(study, finding),
     }
 
 
@@ -61,12 +68,38 @@ def shown(finding: Finding) -> dict[str, Any]:
 def stall(found: Stall) -> dict[str, Any]:
     """Where an order falls, and the causes that were weighed, the weightiest first."""
     return {
-        "where": found.where,
+        "coarser": found.coarser,
+        "cells": found.cells,
+        "where": stalls.where(found),
         "order": found.order,
         "before": list(found.before),
-        "named": [cause.name for cause in found.named],
-        "causes": [{**asdict(cause), "finding": str(cause.finding)} for cause in found.causes],
+        "named": [str(cause.code) for cause in found.named],
+        "causes": [cause(each) for each in found.causes],
+        "ended": ended(found.ended) if found.ended else None,
     }
+
+
+def cause(found: Cause) -> dict[str, Any]:
+    """A cause of a stall; `measured` says in words what its numbers are."""
+    return {
+        "code": str(found.code),
+        "name": stalls.name(found),
+        "finding": str(found.finding),
+        "weight": found.weight,
+        "numbers": found.numbers,
+        "peer": found.peer.method if found.peer else None,
+        "measured": stalls.measured(found),
+    }
+
+
+def ended(end: Ended) -> dict[str, Any]:
+    """A level without an error."""
+    return {"h": end.h, "replicate": end.replicate, "failure": failure(end.failure)}
+
+
+def failure(found: Failure) -> dict[str, Any]:
+    """What ended a run, as codes and numbers."""
+    return {**asdict(found), "cell": list(found.cell) if found.cell else None}
 
 
 def axes(runs: Sequence[Run], results: Mapping[str, Result]) -> dict[str, list[dict[str, Any]]]:
@@ -108,7 +141,8 @@ def row(result: Result) -> dict[str, Any]:
         "layout": run.layout,
         "offset": list(run.offset),
         "status": result.status,
-        "reason": str(result.failure) if result.failure else "",
+        "failure": failure(result.failure) if result.failure else None,
+        "reason": failures.failure(result.failure) if result.failure else "",
         "errors": {q: {n: result.errors[q][n] for n in NORMS} for q in QUANTITIES} if result.errors else None,
         "steps": result.steps,
         "particles": result.particles,

@@ -9,6 +9,7 @@ from mpm_verify.cases.harness.checks import Examination
 from mpm_verify.cases.harness.study import Study
 from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.cases.judging.records import Outcome
+from mpm_verify.reports.sentences import commands, failures, stalls
 
 
 def check_junit(path: Path | None) -> None:
@@ -31,11 +32,12 @@ def write_junit(path: Path, study: Study, found: Sequence[Finding]) -> None:
         d, v = finding.plan, finding.verdict
         name = f"{d.quantity} {d.norm}, {d.ppc} per cell"
         case = ElementTree.SubElement(suite, "testcase", classname=f"{study.name}.{d.method}.{d.solution}", name=name)
+        said = commands.reason(study, finding)
         if v.outcome is not Outcome.PASS:
             kind = "error" if v.outcome is Outcome.ERROR else "failure"
-            ElementTree.SubElement(case, kind, type=str(v.outcome), message=v.reason)
-        stall = [finding.stall.where + ".", *finding.stall.reasons] if finding.stall else []
-        ElementTree.SubElement(case, "system-out").text = "\n".join([v.reason, *stall])
+            ElementTree.SubElement(case, kind, type=str(v.outcome), message=said)
+        stall = [stalls.where(finding.stall) + ".", *stalls.reasons(finding.stall)] if finding.stall else []
+        ElementTree.SubElement(case, "system-out").text = "\n".join([said, *stall])
     outcomes = [f.verdict.outcome for f in judged]
     suite.set("errors", str(outcomes.count(Outcome.ERROR)))
     suite.set("failures", str(outcomes.count(Outcome.FAIL) + outcomes.count(Outcome.INCONCLUSIVE)))
@@ -52,6 +54,8 @@ def write_checks(path: Path, examination: Examination) -> None:
         if check.outcome is not Outcome.PASS:
             kind = "error" if check.outcome is Outcome.ERROR else "failure"
             message = f"{check.found:.8g}, expected {check.way} {check.expected:.8g}, {check.within:.3g}"
+            if check.failure:
+                message = failures.failure(check.failure)
             ElementTree.SubElement(case, kind, type=str(check.outcome), message=message)
     outcomes = [check.outcome for check in checks]
     suite.set("errors", str(outcomes.count(Outcome.ERROR)))
