@@ -46,11 +46,18 @@ def check(solution: Any, law: Law, cells: tuple[int, ...] = ()) -> None:
         raise ValueError(f"{name}: {wrong}")
 
 
+def sides(solution: Any) -> Fraction | None:
+    """Height over width of the rectangle; None where it is no ratio of whole numbers up to MOST."""
+    width, height = (float(side) for side in solution.upper - solution.lower)
+    ratio = Fraction(height / width).limit_denominator(MOST)
+    return None if abs(ratio - height / width) > 1e-9 * height / width else ratio
+
+
 def cells_fit(name: str, solution: Any, cells: tuple[int, ...]) -> None:
     """Square cells, counted along x, must fill the rectangle."""
     width, height = (float(side) for side in solution.upper - solution.lower)
-    ratio = Fraction(height / width).limit_denominator(MOST)
-    if abs(ratio - height / width) > 1e-9 * height / width:
+    ratio = sides(solution)
+    if ratio is None:
         raise ValueError(f"{name}: no square cells fill a rectangle of {width:g} x {height:g}; take a simpler ratio")
     for count in cells:
         if (count * ratio).denominator != 1:

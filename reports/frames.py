@@ -7,12 +7,13 @@ from pathlib import Path
 from typing import Any
 
 from mpm_verify.cases.harness.analysis import Analysis, analyse
-from mpm_verify.cases.harness.axes import NOT_RUN, level, middle, replicated
+from mpm_verify.cases.harness.axes import level, middle, replicated
 from mpm_verify.cases.harness.refinement import Series, collect
 from mpm_verify.cases.harness.store import Arrays, Store, case_of
 from mpm_verify.cases.harness.study import QuantityPlan, ResultRecord, Study
 from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.reports.components import words
+from mpm_verify.solver.failure import FailureKind
 
 Run = Any  # of any case
 USUAL = ("method", "solution", "ppc")  # fields that name a refinement in every table
@@ -105,7 +106,7 @@ class Record:
     def failed(self, series: Series) -> list[Run]:
         """The levels of a series that failed, coarse to fine."""
         levels = [(runs[0], level(runs, self.results, "u", "rms")) for runs in series.replicates]
-        return [run for run, (errors, why) in levels if not errors and NOT_RUN not in why]
+        return [run for run, (_, failure, _) in levels if failure and failure.kind is not FailureKind.NOT_RUN]
 
     @property
     def replicates(self) -> int:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal, Protocol, get_args
 import numpy as np
 
 from mpm_verify.solver.boundary import MASS_CUTOFF, Walls
+from mpm_verify.solver.failure import FailureKind, RunFailed
 from mpm_verify.solver.slabs import Slabs
 from mpm_verify.solver.state import Grid, Ints, Particles
 from mpm_verify.solver.stress_update import check_stress_update
@@ -39,14 +40,6 @@ class Material(Protocol):
 
     def wave_speed(self) -> float:
         """Speed of the fastest wave in the undeformed state."""
-
-
-class RunFailed(Exception):  # noqa: N818 - a failed run is a result, not an error
-    """The run cannot go on. `particle`: its row in the initial layout, -1 if none; `cell`: where it is."""
-
-    def __init__(self, reason: str, step: int = 0, particle: int = -1, cell: tuple[int, int] | None = None) -> None:
-        super().__init__(reason)
-        self.reason, self.step, self.particle, self.cell = reason, step, particle, cell
 
 
 @dataclass(frozen=True)
@@ -120,17 +113,19 @@ class Model:
         return MASS_CUTOFF * float(self.particles.m.max())
 
 
-def check_time_step(model: Model, way_out: str = "") -> None:
-    """Raise RunFailed where dt is above dx / (c + |v|), the time a wave needs to cross a cell; `way_out`: a remark."""
+def check_time_step(model: Model) -> None:
+    """Raise RunFailed where dt is above dx / (c + |v|), the time a wave needs to cross a cell."""
     speed = model.material.wave_speed() + float(np.hypot(*model.particles.v.T).max())
     limit = model.grid.dx / speed
     if model.dt > limit:
-        raise RunFailed(f"dt = {model.dt:.3g} is above the stability limit {limit:.3g}{way_out}")
+        raise RunFailed(FailureKind.UNSTABLE_STEP, numbers={"dt": model.dt, "limit": limit})
 
 
-def fail(model: Model, row: int, reason: str) -> None:
+def fail(model: Model, row: int, kind: FailureKind, numbers: dict[str, float] | None = None) -> None:
     """Raise RunFailed for the particle in that row; what is not finite is named first, since it is the cause."""
     p = model.particles
     finite = all(np.isfinite(a[row]).all() for a in (p.x, p.v, p.F, p.sigma))
     cell = tuple(model.grid.cell(p.x[row]).tolist()) if (np.abs(p.x[row]) < 1e9 * model.grid.dx).all() else None
-    raise RunFailed(reason if finite else "a value that is not finite", model.steps, int(p.id[row]), cell)
+    if not finite:
+        kind, numbers = FailureKind.NOT_FINITE, None
+    raise RunFailed(kind, model.steps, int(p.id[row]), cell, numbers)

@@ -11,14 +11,15 @@ import numpy as np
 
 from mpm_verify.solver._jit import BLOCK
 from mpm_verify.solver.boundary import solve
-from mpm_verify.solver.model import Load, Material, Model, RunFailed, Scheme, check_time_step, fail
+from mpm_verify.solver.failure import FailureKind, RunFailed
+from mpm_verify.solver.model import Load, Material, Model, Scheme, check_time_step, fail
 from mpm_verify.solver.state import Floats, Ints
 from mpm_verify.solver.transfer import g2p, p2g
 
 if TYPE_CHECKING:
     from mpm_verify.solver.rate_material import RateMaterial
 
-__all__ = ["Load", "Material", "Model", "RunFailed", "Scheme", "advance", "check_time_step"]
+__all__ = ["Load", "Material", "Model", "Scheme", "advance", "check_time_step"]
 
 
 def advance(model: Model, load: Load) -> None:
@@ -50,7 +51,7 @@ def stress_modified_last(model: Model) -> None:
     model.scheme.transfer.filter(model, mapped)
     advect(model, model.grid.velocity_acceleration, mapped)
     model.basis.convect(model.particles, model.grid, model.dt)
-    refuse_lost(model)
+    refuse_inverted(model)
     update_stress(model, x)
 
 
@@ -64,14 +65,14 @@ def stress_first(model: Model) -> None:
     before = walled(model, model.grid.momentum_force, before=True)
     model.scheme.transfer.filter(model, before)
     advect(model, rest, before)
-    refuse_lost(model)
+    refuse_inverted(model)
     update_stress(model, model.particles.x)
     particles_to_grid(model)
     equation_of_motion(model)
     new_velocities(model)
     advect(model, model.grid.velocity_acceleration, rest)
     model.basis.convect(model.particles, model.grid, model.dt)
-    refuse_lost(model)
+    refuse_inverted(model)
 
 
 ORDERS = {"usl": stress_last, "musl": stress_modified_last, "usf": stress_first}
@@ -95,7 +96,7 @@ def particles_to_grid(model: Model) -> None:
         refuse_outside(model, s.strayed[s.strayed >= 0])
         s.slab_columns *= 2 if attempt else 1
         s.sort(g, p)
-    raise RunFailed("a particle domain is as wide as the grid", model.steps)
+    raise RunFailed(FailureKind.SLAB, model.steps)
 
 
 def update_stress(model: Model, x: Floats) -> None:
@@ -147,7 +148,7 @@ def grid_to_particles(model: Model) -> None:
     if model.budget:
         model.budget.took(model)
     model.basis.convect(p, g, model.dt)
-    refuse_lost(model)
+    refuse_inverted(model)
 
 
 def new_velocities(model: Model) -> None:
@@ -158,14 +159,14 @@ def new_velocities(model: Model) -> None:
     p.v[:] = share * (p.v + model.dt * taken[:, 2:]) + (1.0 - share) * taken[:, :2]
 
 
-def refuse_lost(model: Model) -> None:
-    """Raise RunFailed for the first particle that the last pass has found without its det F."""
+def refuse_inverted(model: Model) -> None:
+    """Raise RunFailed for the first particle that the last pass has found inverted."""
     if (model.inverted >= 0).any():
         lo = int(model.inverted[model.inverted >= 0][0])
         F = model.particles.F[lo : lo + BLOCK]
         with np.errstate(all="ignore"):  # by the kernel's formula: det() rounds in another way
             J = F[:, 0, 0] * F[:, 1, 1] - F[:, 0, 1] * F[:, 1, 0]
-        fail(model, lo + int(np.flatnonzero(~((J > 0) & (J < np.inf)))[0]), "det F <= 0")
+        fail(model, lo + int(np.flatnonzero(~((J > 0) & (J < np.inf)))[0]), FailureKind.INVERTED)
 
 
 def refuse_outside(model: Model, blocks: Ints) -> None:
@@ -177,4 +178,4 @@ def refuse_outside(model: Model, blocks: Ints) -> None:
             arrays = (p.x[i], p.F[i].ravel(), p.domain[i])
             box = (0.0, g.nx - 1.0, 0.0, g.ny - 1.0)
             if not model.basis.fill(*arrays, *g.origin, 1.0 / g.dx, g.nx, g.ny, *box, table, node):
-                fail(model, i, model.basis.refusal(p.F[i], p.domain[i], g.dx))
+                fail(model, i, *model.basis.refusal(p.F[i], p.domain[i], g.dx))

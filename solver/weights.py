@@ -24,12 +24,14 @@ from typing import ClassVar
 import numpy as np
 
 from mpm_verify.solver._jit import BLOCK, F1, I1, f8, flag, function_type, i8, kernel
+from mpm_verify.solver.failure import FailureKind
 from mpm_verify.solver.layout import Layout
 from mpm_verify.solver.state import Floats, Grid, Particles
 
 #         x   F  domain ox  oy 1/dx nx  ny  x0  x1  y0  y1 table node
 FILL = flag(F1, F1, F1, f8, f8, f8, i8, i8, f8, f8, f8, f8, F1, I1)
 Fill = function_type(FILL)
+Refusal = tuple[FailureKind, dict[str, float]]  # and its numbers, see Failure
 Place = Callable[[Floats], Floats]
 
 
@@ -56,9 +58,9 @@ class Basis:
         return None
 
     @staticmethod
-    def refusal(F: Floats, domain: Floats, dx: float) -> str:
-        """Why the fill refuses a particle on the whole grid; F (2,2) and domain (W,) are its own."""
-        return "the particle is outside the grid"
+    def refusal(F: Floats, domain: Floats, dx: float) -> Refusal:
+        """Why the fill refuses a particle on the whole grid, and numbers; F (2,2) and domain (W,) are its own."""
+        return FailureKind.OUTSIDE_GRID, {}
 
     @staticmethod
     def convect(particles: Particles, grid: Grid, dt: float) -> None:

@@ -28,15 +28,15 @@ from mpm_verify.cases.column.run import ColumnResult, ColumnRun
 from mpm_verify.cases.column.start import stress
 from mpm_verify.cases.harness.environment import environment
 from mpm_verify.cases.harness.memory import forget_peak, peak_memory
-from mpm_verify.cases.harness.study import Failure
 from mpm_verify.solver.boundary import Walls, box, moving
 from mpm_verify.solver.damping import Damping
 from mpm_verify.solver.energy_budget import Budget, kinetic
+from mpm_verify.solver.failure import RunFailed
 from mpm_verify.solver.layout import rectangle
 from mpm_verify.solver.plugins import MATERIALS, METHODS, SMOOTHINGS, TRANSFERS, create
 from mpm_verify.solver.rate_material import RateMaterial
 from mpm_verify.solver.state import Floats, Grid, Particles
-from mpm_verify.solver.step import Model, RunFailed, Scheme, advance, check_time_step
+from mpm_verify.solver.step import Model, Scheme, advance, check_time_step
 
 __all__ = ["Result", "Run", "check", "examine", "execute"]
 
@@ -166,8 +166,8 @@ def execute(run: ColumnRun, tick: Callable[[float], None] = lambda share: None) 
                 measure.look(model)
             kept.take(model, step)
             tick(step / steps)
-    except RunFailed as reason:
-        failure = Failure(reason.reason, reason.step, reason.particle, reason.cell)
+    except RunFailed as ended:
+        failure = ended.failure
     wall, cpu = time.perf_counter() - started, time.process_time() - used
     curves = measure.curves()
     arrays = {f"curve_{name}": column.astype(np.float32) for name, column in curves.items()} | kept.arrays()

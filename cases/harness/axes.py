@@ -15,11 +15,12 @@ import numpy as np
 from mpm_verify.cases.harness.refinement import Series, collect
 from mpm_verify.cases.harness.study import Head, ResultRecord, head, without
 from mpm_verify.cases.judging.fit import Fit
+from mpm_verify.solver.failure import Failure, FailureKind
 
 Run = Any  # of any case with refinements
 Result = ResultRecord[Any]
 Results = Mapping[str, Result]
-NOT_RUN = "not run yet"
+UNDONE = Failure(FailureKind.NOT_RUN, step=-1)
 
 
 @dataclass(frozen=True)
@@ -122,21 +123,23 @@ def replicated(series: Series, results: Results, quantity: str, norm: str) -> li
     return [level(runs, results, quantity, norm)[0] for runs in series.replicates]
 
 
-def level(runs: Sequence[Run], results: Results, quantity: str, norm: str) -> tuple[tuple[float, ...], str]:
-    """Errors of a run and its replicates; none where one of them is not done or failed, and why.
+def level(
+    runs: Sequence[Run], results: Results, quantity: str, norm: str
+) -> tuple[tuple[float, ...], Failure | None, int]:
+    """Errors of a run and its replicates; none where one of them is not done or failed, and why, and which one.
 
     A replicate that cannot take its first step is left out: its domains at the edge are too wide for the method, which
     says nothing of the method where they are not.
     """
     errors = []
     for number, run in enumerate(runs):
-        result, which = results.get(run.digest), f", replicate {number + 1}" if number else ""
+        result = results.get(run.digest)
         if number and result and result.failure and result.failure.step == 0:
             continue
         if result is None or result.status == "failed":
-            return (), f"{result.failure}{which}" if result else NOT_RUN + which
+            return (), result.failure if result and result.failure else UNDONE, number
         errors.append(result.errors[quantity][norm])
-    return tuple(errors), ""
+    return tuple(errors), None, 0
 
 
 def error(run: Run, results: Results, quantity: str, norm: str) -> float | None:

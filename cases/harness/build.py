@@ -110,12 +110,12 @@ def _runs(asked: Asked) -> tuple[tuple[Any, ...], list[QuantityPlan[Any]]]:
 
 def declare(case: Case, run: RunRecord) -> list[QuantityPlan[Any]]:
     """What is declared of a refinement: every quantity in every norm, judged where something is registered."""
-    found = []
+    found, multiple = [], case.multiple(run)
     for quantity in case.quantities:
         for norm in case.norms:
             expectation = case.expectation(run, quantity, norm)
             judged = expectation is not None and (quantity, norm) in case.judged
-            found.append(QuantityPlan(run, quantity, norm, judged, expectation))
+            found.append(QuantityPlan(run, quantity, norm, judged, expectation, multiple))
     return found
 
 

@@ -74,6 +74,11 @@ class Case:
         return getattr(self.module, "expectation", lambda run, quantity, norm: None)
 
     @property
+    def multiple(self) -> Callable[[RunRecord], int]:
+        """Number whose multiples are the cells that fit the body of a run."""
+        return getattr(self.module, "multiple", lambda run: 1)
+
+    @property
     def canonical(self) -> Callable[[dict[str, Any]], dict[str, Any]]:
         """One name for one thing: specifications without parameters that are at their defaults."""
         return getattr(self.module, "canonical", lambda values: values)

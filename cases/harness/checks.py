@@ -17,6 +17,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from mpm_verify.cases.harness.store import Store, StoreError, make
 from mpm_verify.cases.judging.records import Outcome
+from mpm_verify.solver.failure import Failure
 from mpm_verify.solver.state import Floats
 
 FORMAT = 1
@@ -49,6 +50,7 @@ class Check:
     way: Way
     source: str
     within: float = 0.0
+    failure: Failure | None = None  # what ended the run that has no number to hold
 
     @property
     def miss(self) -> float:

@@ -9,6 +9,7 @@ from math import inf
 from typing import Any, ClassVar, Generic, Literal, TypeVar
 
 from mpm_verify.cases.judging.records import Expectation
+from mpm_verify.solver.failure import Failure
 
 FORMAT = 2  # of study.json and of every Result; a reader refuses another number
 REFINED = ("cells", "courant", "offset")  # fields in which the runs of one refinement differ
@@ -51,21 +52,6 @@ class RunRecord:
     def nodes(self) -> int:
         """Number of grid nodes, as near as it is known before the run."""
         return 1
-
-
-@dataclass(frozen=True)
-class Failure:
-    """Why a run could not go on: a result, not a crash. `particle` is its index in the initial layout, -1 if none."""
-
-    reason: str
-    step: int = 0
-    particle: int = -1
-    cell: tuple[int, int] | None = None
-
-    def __str__(self) -> str:
-        where = f", particle {self.particle}" if self.particle >= 0 else ""
-        where += f" in cell {self.cell}" if self.cell else ""
-        return f"{self.reason} at step {self.step}{where}"
 
 
 R = TypeVar("R", bound=RunRecord)
@@ -125,6 +111,7 @@ class QuantityPlan(Generic[R]):
     norm: str
     judged: bool
     expectation: Expectation | None
+    multiple: int = 1  # of cells that fill the body of the solution
 
     @property
     def head(self) -> Head:

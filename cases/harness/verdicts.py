@@ -8,6 +8,7 @@ from mpm_verify.cases.harness.axes import crossed, error, level, local, middle, 
 from mpm_verify.cases.harness.refinement import Series, collect
 from mpm_verify.cases.harness.study import Head, QuantityPlan, ResultRecord, Study, without
 from mpm_verify.cases.judging.order import Expectation, Level, Quantity, Verdict, judge, judge_family
+from mpm_verify.cases.judging.records import Ended
 from mpm_verify.cases.judging.stall import BELOW, USUAL, Measured, Peer, Stall, explain
 
 NOTHING_EXPECTED = Expectation(order=None)  # only its slope is used
@@ -47,7 +48,11 @@ def findings(study: Study[Any], results: Results) -> list[Finding]:
     found = []
     for i, (declared, quantity) in enumerate(zip(study.plans, quantities, strict=True)):
         verdict = verdicts.get(i) or judge(
-            quantity.levels, quantity.expectation, floor=quantity.floor, dt_halved=quantity.dt_halved
+            quantity.levels,
+            quantity.expectation,
+            floor=quantity.floor,
+            dt_halved=quantity.dt_halved,
+            multiple=quantity.multiple,
         )
         series = known.get(declared.head)
         done = tuple(results.get(run.digest) for run in series.runs) if series else ()
@@ -62,14 +67,15 @@ def refinement(declared: QuantityPlan[Any], runs: Sequence[Run]) -> list[Run]:
 
 def _quantity(declared: QuantityPlan[Any], series: Series | None, results: Results) -> Quantity:
     """The levels of one declared quantity, and its error with half the time step on the finest level."""
+    expectation = declared.expectation or NOTHING_EXPECTED
     if series is None:
-        return Quantity([], declared.expectation or NOTHING_EXPECTED, 0.0, None)
+        return Quantity([], expectation, 0.0, None)
     levels = [
         Level(1 / runs[0].cells, *level(runs, results, declared.quantity, declared.norm)) for runs in series.replicates
     ]
     floors = [r.floor.get(declared.quantity, 0.0) for run in series.runs if (r := results.get(run.digest))]
     half = error(series.halved, results, declared.quantity, declared.norm) if series.halved else None
-    return Quantity(levels, declared.expectation or NOTHING_EXPECTED, max(floors, default=0.0), half)
+    return Quantity(levels, expectation, max(floors, default=0.0), half, declared.multiple)
 
 
 def _with_stalls(found: Sequence[Finding], known: Mapping[Head, Series], results: Results) -> list[Finding]:
@@ -97,8 +103,8 @@ def _measured(found: Finding, known: Mapping[Head, Series], results: Results, pe
     d, series = found.plan, known[found.plan.head]
     done = doublings(found)
     cells = tuple(result.run.cells for _, result in done)
-    lost = [
-        f"the run with {result.run.cells} cells ended: {result.failure}"
+    ended = [
+        Ended(1 / result.run.cells, result.failure)
         for result in found.results
         if result and result.failure and cells and result.run.cells > cells[-1]
     ]
@@ -116,7 +122,7 @@ def _measured(found: Finding, known: Mapping[Head, Series], results: Results, pe
         error(series.halved, results, *STALLS) if series.halved and finest else None,
         _other(series, known, results, cells),
         tuple(others),
-        lost[0] if lost else "",
+        ended[0] if ended else None,
         order,
         d.expectation.below if d.expectation and d.expectation.order is not None else BELOW,
     )

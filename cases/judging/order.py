@@ -4,7 +4,8 @@ A least-squares slope within half an order of the formal one passes codes with a
 with rates that drift, so no single slope decides here. In turn: gates (is there anything to judge), asymptotic window,
 equivalence of the slope with a band, contamination, magnitude. FAIL needs evidence against the expectation; lack of
 evidence is INCONCLUSIVE and names the run that would decide. An expected order of None registers non-convergence,
-which growth or failed runs show. The statistics stand in fit.py, the norms in norms.py.
+which growth or failed runs show. Reasons are codes with numbers, see records.py. The statistics stand in fit.py, the
+norms in norms.py.
 """
 
 from collections.abc import Sequence
@@ -14,7 +15,19 @@ from functools import cached_property
 import numpy as np
 
 from mpm_verify.cases.judging.fit import Fit, contamination
-from mpm_verify.cases.judging.records import Contamination, Expectation, Level, Outcome, Verdict
+from mpm_verify.cases.judging.records import (
+    Action,
+    Contamination,
+    Expectation,
+    Level,
+    Numbers,
+    Outcome,
+    Reason,
+    ReasonCode,
+    Verdict,
+    Wanted,
+)
+from mpm_verify.solver.failure import FailureKind
 
 __all__ = ["Expectation", "Level", "Outcome", "Quantity", "Verdict", "judge", "judge_family"]
 
@@ -26,21 +39,26 @@ ONE_SIGMA = 0.84  # NO_PASS must hold with a standard error to spare: the best f
 MAGNITUDE = 0.10  # relative distance from the recorded error
 GROWTH = 2.0  # a flat sequence with 15 % scatter grows by 1.5 from its best level in 9 % of draws, by 2 in 0.2 %
 DROP = 0.3  # in the local order, of a stall: a fall that no scatter of a converging family shows
+LEAST_CELLS = 2  # of a study
 CONVERGES = 0.5  # a smaller order is nearly a stall: no surprise where non-convergence is expected
 
 
 PASS, FAIL, INCONCLUSIVE = Outcome.PASS, Outcome.FAIL, Outcome.INCONCLUSIVE
-Finding = tuple[Outcome, str]
+Finding = tuple[Outcome, Reason]
 
 
 @dataclass(frozen=True)
 class Quantity:
-    """What is judged: the arguments of `judge`. Raises ValueError if two levels share a cell size."""
+    """What is judged: the arguments of `judge`. Raises ValueError if two levels share a cell size.
+
+    `multiple`: a number of cells that is no multiple of it cannot be asked for.
+    """
 
     levels: Sequence[Level]
     expectation: Expectation
     floor: float
     dt_halved: float | None
+    multiple: int = 1
 
     def __post_init__(self) -> None:
         if len({level.h for level in self.levels}) < len(self.levels):
@@ -58,10 +76,22 @@ class Quantity:
         return Fit(np.array([level.h for level in done]), [np.array(level.errors) for level in done])
 
     @property
-    def finer(self) -> str:
-        """The run to ask for when one more level would decide."""
+    def finer(self) -> Wanted:
+        """The run to ask for when one more level would decide: the refinement goes on as it did last."""
         h = [level.h for level in self.ordered]
-        return f"run h={_inverse(h[-1] ** 2 / h[-2] if len(h) > 1 else h[-1] / 2)}"
+        return self.wanted(Action.ADD_LEVEL, h[-1] ** 2 / h[-2] if len(h) > 1 else h[-1] / 2)
+
+    def wanted(self, action: Action, h: float) -> Wanted:
+        """The run that would decide, and all the cells of the study then, whole multiples of `multiple`."""
+        counts = [round(1 / level.h) for level in self.ordered]
+        if any(abs(n * level.h - 1) > 1e-6 for n, level in zip(counts, self.ordered, strict=True)):
+            return Wanted(action, h)
+        cells = max(1, round(1 / h / self.multiple)) * self.multiple
+        if action is Action.ADD_LEVEL:
+            counts.append(cells if h >= self.ordered[-1].h else max(cells, counts[-1] + self.multiple))
+        if action is Action.REPLACE_FINEST:
+            counts = [n for n in (cells, *counts[:-1]) if n >= LEAST_CELLS]
+        return Wanted(action, 1 / cells if action is Action.ADD_LEVEL else h, tuple(sorted(set(counts))))
 
     @property
     def band(self) -> tuple[float, float]:
@@ -77,13 +107,14 @@ def judge(
     floor: float,
     dt_halved: float | None,
     confidence: float = 0.95,
+    multiple: int = 1,
 ) -> Verdict:
     """Verdict on one quantity in one norm; `levels` may come in any order.
 
     `floor` is the round-off floor of the quantity. `dt_halved` is the error of the finest unshifted run with half the
     time step, None if nobody ran that. Raises ValueError if two levels share a cell size.
     """
-    return _judge(Quantity(levels, expectation, floor, dt_halved), confidence)
+    return _judge(Quantity(levels, expectation, floor, dt_halved, multiple), confidence)
 
 
 def judge_family(items: Sequence[Quantity], *, confidence: float = 0.95) -> tuple[Verdict, ...]:
@@ -106,12 +137,11 @@ def _judge(q: Quantity, confidence: float) -> Verdict:
     order, fit, slope, shares = q.expectation.order, q.fit, q.fit.slope, None
     if order is not None and slope:
         shares = contamination(fit.h[fit.judged], fit.error[fit.judged], order, ONE_SIGMA, fit.noise)
-    if q.expectation.lost and q.ordered and all(q.expectation.lost in level.failed for level in q.ordered):
-        last = f"the last at h={_inverse(q.ordered[-1].h)} with {q.ordered[-1].failed}"
-        outcome, reason = PASS, f"does not converge, as expected: all {len(q.ordered)} runs ended, {last}"
+    kind, ended = q.expectation.failed, tuple(end for level in q.ordered if (end := level.ended))
+    if kind and q.ordered and all(level.failed_by(kind) for level in q.ordered):
+        outcome, reason = PASS, Reason(ReasonCode.ALL_FAILED, failed=ended)
     elif not len(fit.h):
-        ends = "; ".join(f"h={_inverse(level.h)}: {level.ended}" for level in q.ordered)
-        outcome, reason = Outcome.ERROR, f"no level finished ({ends or 'there is none'})"
+        outcome, reason = Outcome.ERROR, Reason(ReasonCode.NOTHING_FINISHED, failed=ended)
     elif order is None:
         outcome, reason = _non_convergence(q, confidence)
     else:
@@ -121,115 +151,109 @@ def _judge(q: Quantity, confidence: float) -> Verdict:
     return Verdict(outcome, order, observed, interval, reason, tuple(fit.orders.tolist()), fit.window, shares)
 
 
-def _gate(q: Quantity) -> str:
-    """Why there is nothing to judge yet, with the run that would decide; empty if every gate is open."""
-    fit, failed = q.fit, [level for level in q.ordered if level.ended]
+def _gate(q: Quantity) -> Reason | None:
+    """Why there is nothing to judge yet, with the run that would decide; None if every gate is open."""
+    fit, ended = q.fit, next((end for level in q.ordered if (end := level.ended)), None)
     if len(q.levels) < LEVELS:
-        return f"with fewer than {LEVELS} levels nothing shows that the order has settled: {q.finer}"
-    if failed:
-        return f"there is no error at h={_inverse(failed[0].h)} ({failed[0].ended}): that run has to finish"
+        return Reason(ReasonCode.TOO_FEW_LEVELS, {"levels": LEVELS}, wanted=q.finer)
+    if ended:
+        return Reason(ReasonCode.LEVEL_MISSING, failed=(ended,), wanted=q.wanted(Action.FINISH, ended.h))
     if fit.lowest <= CLEAR * q.floor:
-        close = f"an error of {_short(fit.lowest)} is not clear of the round-off floor {_short(q.floor)}"
-        return f"{close}: run h={_inverse(2 * fit.h[0])} in place of the finest"
-    finest = f"run h={_inverse(fit.h[-1])} with half the time step"
+        coarser = q.wanted(Action.REPLACE_FINEST, 2 * float(fit.h[0]))
+        return Reason(ReasonCode.NEAR_ROUND_OFF, {"error": fit.lowest, "floor": q.floor}, wanted=coarser)
+    finest = float(fit.h[-1])
     if q.dt_halved is None or not np.isfinite(q.dt_halved):
-        return f"nothing shows that the time step is small enough: {finest}"
-    change = abs(q.dt_halved / fit.replicates[-1][0] - 1)
+        return Reason(ReasonCode.TIME_STEP_UNKNOWN, wanted=q.wanted(Action.HALVE_FINEST, finest))
+    change = abs(q.dt_halved / float(fit.replicates[-1][0]) - 1)
     if change >= COUPLED:
-        return f"coupled: half the time step changes the finest error by {change:.0%}: run all levels with it"
+        return Reason(ReasonCode.TIME_STEP_COUPLED, {"change": change}, wanted=q.wanted(Action.HALVE_ALL, finest))
     rises = fit.h[1:][np.diff(fit.error) >= 0]
-    return f"the error does not fall on the way to h={_inverse(rises[0])}: {q.finer}" if len(rises) else ""
+    return Reason(ReasonCode.ERROR_RISES, {"h": float(rises[0])}, wanted=q.finer) if len(rises) else None
 
 
 def _convergence(q: Quantity, shares: Contamination | None, confidence: float) -> Finding:
-    """The first FAIL of slope, contamination and magnitude, else the first INCONCLUSIVE, else PASS."""
+    """The first FAIL of slope, contamination and magnitude, else the first INCONCLUSIVE, else PASS with all numbers."""
     if q.fit.window is None or shares is None:
-        orders = " ".join(f"{p:.2f}" for p in q.fit.orders)
-        return INCONCLUSIVE, f"the local orders {orders} have not settled: {q.finer}"
+        return INCONCLUSIVE, Reason(ReasonCode.NOT_SETTLED, {"orders": tuple(q.fit.orders.tolist())}, wanted=q.finer)
     findings = [_equivalence(q, confidence), _purity(q, shares), _magnitude(q)]
     decided = [f for outcome in (FAIL, INCONCLUSIVE) for f in findings if f[0] is outcome]
-    return decided[0] if decided else (PASS, "; ".join(text for _, text in findings if text))
+    if decided:
+        return decided[0]
+    numbers: Numbers = {}
+    for _, reason in findings:
+        numbers |= reason.numbers
+    return PASS, Reason(ReasonCode.AS_EXPECTED, numbers)
 
 
 def _equivalence(q: Quantity, confidence: float) -> Finding:
     """The whole interval of the slope, and the last local order, against the band."""
-    slope, last, (low, high) = q.fit.slope, q.fit.orders[-1], q.band
+    slope, last, (low, high) = q.fit.slope, float(q.fit.orders[-1]), q.band
     assert slope is not None  # a window has three levels
     start, end = slope.interval(confidence)
-    percent = f"{100 * confidence:.3g} % interval {start:.2f} to {end:.2f}"
-    text = f"order {slope.value:.2f} ({percent}, last pair {last:.2f}) against {low:.2f} to {high:.2f}"
+    numbers: Numbers = {"order": slope.value, "start": start, "end": end, "confidence": confidence, "last": last}
+    numbers |= {"band_low": low, "band_high": high}
     if low <= start and end <= high and low <= last <= high:
-        return PASS, text
+        return PASS, Reason(ReasonCode.AS_EXPECTED, numbers)
     if slope.value > high or last > high:
-        return INCONCLUSIVE, f"{text}: above the band, so the expectation is wrong or errors cancel: {q.finer}"
+        return INCONCLUSIVE, Reason(ReasonCode.ORDER_ABOVE, numbers, wanted=q.finer)
     if end < low and last < low and not q.fit.rises_to(low):
-        return FAIL, f"{text}: below the band"
-    return INCONCLUSIVE, f"{text}: undecided: {q.finer}"
+        return FAIL, Reason(ReasonCode.ORDER_BELOW, numbers)
+    return INCONCLUSIVE, Reason(ReasonCode.ORDER_UNDECIDED, numbers, wanted=q.finer)
 
 
 def _purity(q: Quantity, shares: Contamination) -> Finding:
     """Lower order and floor in the finest error. Orders that rise to the band tell of coarse grids, not of a defect."""
-    parts = f"lower order {shares.lower:.0%}, floor {shares.floor:.0%} of the finest error, at most {shares.most:.1%}"
+    parts: Numbers = {"lower": shares.lower, "floor": shares.floor, "most": shares.most}
     if shares.total > DEFECT and not q.fit.rises_to(q.band[0]):
-        return FAIL, f"the expected order is the smaller part: {parts}"
+        return FAIL, Reason(ReasonCode.CONTAMINATED, parts)
     if shares.most > NO_PASS:
-        return INCONCLUSIVE, f"contamination of {NO_PASS:.0%} is not ruled out: {parts}: {q.finer}"
-    return PASS, f"contamination at most {shares.most:.1%}"
+        return INCONCLUSIVE, Reason(ReasonCode.CONTAMINATION_OPEN, {"limit": NO_PASS, **parts}, wanted=q.finer)
+    return PASS, Reason(ReasonCode.AS_EXPECTED, {"most": shares.most})
 
 
 def _magnitude(q: Quantity) -> Finding:
     """The recorded error at its own cell size; if that was not run, carried to the finest, which proves no FAIL."""
     e, fit = q.expectation, q.fit
     if e.constant is None or e.constant_h is None or e.order is None:
-        return PASS, ""
+        return PASS, Reason(ReasonCode.AS_EXPECTED)
     same = np.flatnonzero(np.isclose(fit.h, e.constant_h))
     at = int(same[0]) if len(same) else -1
-    ratio = fit.error[at] / e.constant * (1 if len(same) else (e.constant_h / fit.h[at]) ** e.order)
-    text = f"the error at h={_inverse(fit.h[at])} is {ratio:.2f} times the recorded one"
+    ratio = float(fit.error[at] / e.constant * (1 if len(same) else (e.constant_h / fit.h[at]) ** e.order))
+    numbers: Numbers = {"h": float(fit.h[at]), "ratio": ratio}
     if abs(ratio - 1) <= MAGNITUDE:
-        return PASS, text
-    return (FAIL, text) if len(same) else (INCONCLUSIVE, f"{text}, carried over: run h={_inverse(e.constant_h)}")
+        return PASS, Reason(ReasonCode.AS_EXPECTED, numbers)
+    if len(same):
+        return FAIL, Reason(ReasonCode.MAGNITUDE, numbers)
+    wanted = q.wanted(Action.ADD_LEVEL, e.constant_h)
+    return INCONCLUSIVE, Reason(ReasonCode.MAGNITUDE_CARRIED, numbers, wanted=wanted)
 
 
 def _non_convergence(q: Quantity, confidence: float) -> Finding:
-    """Met if the error grows clearly from its smallest value on, or if runs finer than a finished one lost det F.
+    """Met if the error grows clearly from its smallest value on, or if runs finer than a finished one were inverted.
 
-    Where a stall is expected, an order that has fallen below it meets it, and lost runs do not.
+    Where a stall is expected, an order that has fallen below it meets it, and failed runs do not.
     """
-    e, lost = q.expectation, [level for level in q.ordered if "det F" in level.failed]
-    h, error, slope, orders = q.fit.h, q.fit.error, q.fit.slope, q.fit.orders
-    best, seen = int(np.argmin(error)), []
-    finer = [level for level in lost if level.h < h[0]]
+    e, h, error, slope, orders = q.expectation, q.fit.h, q.fit.error, q.fit.slope, q.fit.orders
+    best = int(np.argmin(error))
+    numbers: Numbers = {}
     if error[-1] >= GROWTH * error[best] > 0 and np.polyfit(np.log(h[best:]), np.log(error[best:]), 1)[0] < 0:
-        seen.append(f"the error grew {_path(q.fit, best)}")
-    if finer and e.stall is None:
-        more = f" and {len(finer) - 1} finer as well" if finer[1:] else ""
-        seen.append(f"the run at h={_inverse(finer[0].h)} ended with {finer[0].failed}{more}")
+        numbers |= _path(q.fit, best)
+    inverted = [level for level in q.ordered if level.h < h[0] and level.failed_by(FailureKind.INVERTED)]
+    finer = tuple(end for level in inverted if (end := level.ended)) if e.stall is None else ()
     if e.stall is not None and len(h) >= LEVELS and orders[-1] < e.stall and orders.max() - orders[-1] > DROP:
-        seen.append(f"the order fell from {orders.max():.2f} to {orders[-1]:.2f} at h={_inverse(h[-1])}")
-    if seen:
-        return PASS, f"{'stalls' if e.stall is not None else 'does not converge'}, as expected: {', and '.join(seen)}"
+        numbers |= {"order_best": float(orders.max()), "order_last": float(orders[-1]), "h_last": float(h[-1])}
+    if numbers or finer:
+        return PASS, Reason(ReasonCode.DIVERGES if e.stall is None else ReasonCode.STALLS, numbers, finer)
     least = CONVERGES if e.stall is None else e.stall
     fine = e.stall_h is None or h[-1] <= e.stall_h * (1 + 1e-9)
     if fine and len(h) >= LEVELS and slope and min(slope.interval(confidence)[0], *orders) > least:
-        return FAIL, f"a surprise: not expected to converge, the error fell {_path(q.fit)}, order {slope.value:.2f}"
-    went = f"the error went {_path(q.fit)}" if h[1:].size else f"one level finished, h={_inverse(h[0])}"
-    wanted = (
-        "neither growth nor convergence" if e.stall is None else f"neither a stall below {e.stall:g} nor convergence"
-    )
-    return INCONCLUSIVE, f"{wanted}: {went}: {q.finer if fine else f'run h={_inverse(e.stall_h or 0.0)}'}"
+        return FAIL, Reason(ReasonCode.CONVERGES, {**_path(q.fit), "order": slope.value})
+    wanted = q.finer if fine else q.wanted(Action.ADD_LEVEL, e.stall_h or 0.0)
+    stall: Numbers = {} if e.stall is None else {"stall": e.stall}
+    return INCONCLUSIVE, Reason(ReasonCode.NEITHER, stall | _path(q.fit), wanted=wanted)
 
 
-def _path(fit: Fit, start: int = 0) -> str:
-    ends = [f"{_short(fit.error[i])} at h={_inverse(fit.h[i])}" for i in (start, -1)]
-    return f"from {ends[0]} to {ends[1]}"
-
-
-def _short(error: float) -> str:
-    return f"{error:.1e}".replace("e-0", "e-").replace("e+0", "e+")
-
-
-def _inverse(h: float) -> str:
-    """1/64 for a cell size of 0.015625: people count cells."""
-    cells = round(1 / h)
-    return f"1/{cells}" if cells > 1 and np.isclose(cells * h, 1) else f"{h:.4g}"
+def _path(fit: Fit, start: int = 0) -> Numbers:
+    """The errors from a level to the finest."""
+    ends = {"h_0": fit.h[start], "error_0": fit.error[start], "h_1": fit.h[-1], "error_1": fit.error[-1]}
+    return {name: float(value) for name, value in ends.items()}

@@ -1,8 +1,10 @@
-"""What the order rule takes and gives: Expectation and Level in, Outcome and Verdict out."""
+"""What the order rule takes and gives: Expectation and Level in, Outcome, Reason and Verdict out; no words."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 from math import isfinite
+
+from mpm_verify.solver.failure import Failure, FailureKind
 
 
 class Outcome(StrEnum):
@@ -19,8 +21,8 @@ class Expectation:
     """Registered before the run: the band [order - below, order + above], its source, and the recorded error.
 
     `constant` is the error once recorded at cell size `constant_h`. An order of None expects non-convergence: growth of
-    the error, or fine runs that lose their det F; if `stall` is given, a local order that falls below it on cells of
-    `stall_h` or finer; if `lost` is given, that every run ends with these words in its reason.
+    the error, or fine runs whose particles are inverted; if `stall` is given, a local order that falls below it on
+    cells of `stall_h` or finer; if `failed` is given, that every run ends with that kind of failure.
     Raises ValueError if only one of the two is given, if the band has no width, or for a stall beside an order.
     """
 
@@ -32,7 +34,7 @@ class Expectation:
     constant_h: float | None = None
     stall: float | None = None
     stall_h: float | None = None
-    lost: str = ""
+    failed: FailureKind | None = None
 
     def __post_init__(self) -> None:
         if (self.constant is None) != (self.constant_h is None):
@@ -44,33 +46,112 @@ class Expectation:
 
     @property
     def kind(self) -> str:
-        """`order 2`, `diverges`, `stalls`, or `lost` with the reason."""
+        """`order 2`, `diverges`, `stalls`, or `failed` with the kind of failure."""
         if self.order is not None:
             return f"order {self.order:g}"
-        return "stalls" if self.stall is not None else f"lost: {self.lost}" if self.lost else "diverges"
+        return "stalls" if self.stall is not None else f"failed {self.failed}" if self.failed else "diverges"
+
+
+@dataclass(frozen=True)
+class Ended:
+    """A level without an error to judge: its cell size, why, and which of its replicates, 0 the unshifted one."""
+
+    h: float
+    failure: Failure
+    replicate: int = 0
 
 
 @dataclass(frozen=True)
 class Level:
     """Errors at one cell size `h`: one, or one a replicate, the run on the unshifted grid first.
 
+    `failed` says what ended a run of the level, and `replicate` which one, 0 the unshifted run.
     Raises ValueError for a cell size that is not positive or a negative error: a norm has no sign.
     """
 
     h: float
     errors: tuple[float, ...]
-    failed: str = ""
+    failed: Failure | None = None
+    replicate: int = 0
 
     def __post_init__(self) -> None:
         if not self.h > 0 or any(e < 0 for e in self.errors):
             raise ValueError(f"not a level: h = {self.h}, errors = {self.errors}")
 
     @property
-    def ended(self) -> str:
-        """Why this level has no error to judge; empty if it has one."""
-        if self.failed or not self.errors:
-            return self.failed or "no error"
-        return "" if all(map(isfinite, self.errors)) else "an error that is not finite"
+    def ended(self) -> Ended | None:
+        """Why this level has no error to judge; None if it has one."""
+        if self.failed:
+            return Ended(self.h, self.failed, self.replicate)
+        if self.errors and all(map(isfinite, self.errors)):
+            return None
+        kind = FailureKind.ERROR_NOT_FINITE if self.errors else FailureKind.NO_ERROR
+        return Ended(self.h, Failure(kind, step=-1))
+
+    def failed_by(self, kind: FailureKind) -> bool:
+        """Whether a failure of that kind ended it."""
+        return self.failed is not None and self.failed.kind is kind
+
+
+class ReasonCode(StrEnum):
+    """What decided a verdict; in brackets the numbers of the Reason. The words are in reports/sentences/verdicts.py."""
+
+    AS_EXPECTED = "as_expected"  # PASS [those of ORDER_*, most, and of MAGNITUDE if an error is recorded]
+    ALL_FAILED = "all_failed"  # PASS: every run ended with the registered kind
+    DIVERGES = "diverges"  # PASS [h_0, error_0, h_1, error_1 of growth; finer runs that failed]
+    STALLS = "stalls"  # PASS [order_best, order_last, h_last; those of growth]
+    ORDER_BELOW = "order_below"  # FAIL [order, start, end, confidence, last, band_low, band_high]
+    CONTAMINATED = "contaminated"  # FAIL [lower, floor, most]
+    MAGNITUDE = "magnitude"  # FAIL [h, ratio]
+    CONVERGES = "converges"  # FAIL: not expected [h_0, error_0, h_1, error_1, order]
+    NOTHING_FINISHED = "nothing_finished"  # ERROR
+    TOO_FEW_LEVELS = "too_few_levels"  # INCONCLUSIVE from here on [levels needed]
+    LEVEL_MISSING = "level_missing"
+    NEAR_ROUND_OFF = "near_round_off"  # [error, floor]
+    TIME_STEP_UNKNOWN = "time_step_unknown"
+    TIME_STEP_COUPLED = "time_step_coupled"  # [change]
+    ERROR_RISES = "error_rises"  # [h]
+    NOT_SETTLED = "not_settled"  # [local orders]
+    ORDER_ABOVE = "order_above"
+    ORDER_UNDECIDED = "order_undecided"
+    CONTAMINATION_OPEN = "contamination_open"  # [limit, lower, floor, most]
+    MAGNITUDE_CARRIED = "magnitude_carried"  # [h, ratio]
+    NEITHER = "neither"  # growth, or a stall below `stall`, nor convergence [stall, h_0, error_0, h_1, error_1]
+
+
+class Action(StrEnum):
+    """What a run would change that decides."""
+
+    ADD_LEVEL = "add_level"
+    REPLACE_FINEST = "replace_finest"  # by a level coarser than all
+    HALVE_FINEST = "halve_finest"  # the time step of the finest level, beside the whole one
+    HALVE_ALL = "halve_all"  # the time step of every level
+    FINISH = "finish"  # a level that has no error
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """The run that would decide: what it changes, its cell size, and all cells to run then.
+
+    `cells` is empty where cell sizes are not one over whole numbers.
+    """
+
+    action: Action
+    h: float
+    cells: tuple[int, ...] = ()
+
+
+Numbers = dict[str, float | tuple[float, ...]]
+
+
+@dataclass(frozen=True)
+class Reason:
+    """What decided: a code, its numbers, levels without an error that it is about, and the run that would decide."""
+
+    code: ReasonCode
+    numbers: Numbers = field(default_factory=dict, hash=False)
+    failed: tuple[Ended, ...] = ()
+    wanted: Wanted | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,13 +170,13 @@ class Contamination:
 
 @dataclass(frozen=True)
 class Verdict:
-    """Outcome, what decided it in one sentence, and the numbers behind it, over the finished levels, coarse to fine."""
+    """Outcome, what decided it, and the numbers behind it, over the finished levels, coarse to fine."""
 
     outcome: Outcome
     expected: float | None
     observed: float | None
     interval: tuple[float, float] | None
-    reason: str
+    reason: Reason
     local_orders: tuple[float, ...] = ()
     window: tuple[int, int] | None = None
     contamination: Contamination | None = None

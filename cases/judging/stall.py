@@ -4,7 +4,7 @@ A stall is a local order of the finest pair of levels below what is usual, and l
 error that the usual order does not explain, the *excess*, is what a cause has to explain. A run that differs in nothing
 but the cause and has a smaller error *shows* it; what is only measured where the order falls is *present*. A cause that
 explains half of the excess is named, one that explains a quarter is named as a part, and where none does the report
-says so.
+says so. Causes are codes with numbers; their words are in reports/sentences/stalls.py.
 """
 
 from dataclasses import dataclass, field
@@ -12,6 +12,7 @@ from enum import StrEnum
 from math import log
 
 from mpm_verify.cases.harness.axes import local
+from mpm_verify.cases.judging.records import Ended
 
 USUAL, BELOW = 2.0, 0.2  # order of u of every method here before particles cross cells, and the band of the order rule
 DROP = 0.1  # a smaller fall of the local order is none
@@ -32,6 +33,17 @@ class Finding(StrEnum):
     UNKNOWN = "not measured"
 
 
+class CauseCode(StrEnum):
+    """What can make an order fall; in brackets the numbers of the Cause, which has none where nothing is measured."""
+
+    FAILED_RUN = "failed_run"  # a finer run failed, and so nothing is known of its order
+    CROSSINGS = "cell_crossings"  # [faces; cells; faces_first, cells_first; cells_before, ratio, ...]
+    QUADRATURE = "quadrature"  # with so few particles [ppc, other_ppc, change; order]
+    GAPS = "gaps"  # and overlaps between domains [gap, gap_first, cells_first]
+    TIME_STEP = "time_step"  # [change]
+    ROUND_OFF = "round_off"  # [times: the finest error over its floor]
+
+
 @dataclass(frozen=True)
 class Peer:
     """Another method on the same solution, cells and particle count: what is measured on its finest level."""
@@ -47,7 +59,8 @@ class Measured:
     """What is measured of one refinement: sequences over the finished levels, coarse to fine.
 
     `gaps` in particle spacings, None for methods that know points only. `halved` is the finest error with half the time
-    step, `other` another particle count and the errors of the finest levels with it. `lost` says how finer runs ended.
+    step, `other` another particle count and the errors of the finest levels with it. `ended`: the next finer run, if it
+    failed.
     """
 
     cells: tuple[int, ...]
@@ -59,7 +72,7 @@ class Measured:
     halved: float | None = None
     other: tuple[int, tuple[float, ...]] | None = None
     peers: tuple[Peer, ...] = ()
-    lost: str = ""
+    ended: Ended | None = None
     order: float = USUAL
     below: float = BELOW
 
@@ -81,22 +94,32 @@ class Measured:
 
 @dataclass(frozen=True)
 class Cause:
-    """One cause: how it is known, the share of the excess that it explains (0 to 1), and the numbers in a sentence."""
+    """One cause: how it is known, the fraction of the excess that it explains (0 to 1), and what was measured of it.
 
-    name: str
+    `peer` is a method that is like this one in what the cause is about, and keeps its order; `ended` a run that failed.
+    """
+
+    code: CauseCode
     finding: Finding
     weight: float
-    text: str
+    numbers: dict[str, float] = field(default_factory=dict, hash=False)
+    peer: Peer | None = None
+    ended: Ended | None = None
 
 
 @dataclass(frozen=True)
 class Stall:
-    """Where, the finest local order and those before it, and the causes: shown before present, then by weight."""
+    """The local order from `coarser` to `cells`, those before it, and the causes: shown before present, then by weight.
 
-    where: str
+    `coarser` is None where the order is as usual, and a finer run than that with `cells` failed: `ended`.
+    """
+
+    coarser: int | None
+    cells: int
     order: float | None
     before: tuple[float, ...]
-    causes: tuple[Cause, ...] = field(default=())
+    causes: tuple[Cause, ...] = ()
+    ended: Ended | None = None
 
     @property
     def named(self) -> list[Cause]:
@@ -108,41 +131,21 @@ class Stall:
         """What explains a part."""
         return [c for c in self.causes if PART <= c.weight < NAMED]
 
-    @property
-    def reasons(self) -> list[str]:
-        """What explains the excess, or a part of it, in sentences; where no cause is named, they say so."""
-        said = [f"{c.name[:1].upper()}{c.name[1:]}: {c.text}." for c in self.named]
-        said = said or ["The evidence does not name a cause."]
-        return said + [f"In part {c.name}: {c.text}." for c in self.parts]
-
-    @property
-    def why(self) -> list[str]:
-        """All causes in sentences: `reasons`, then those that are not it or not known in one sentence each."""
-        said = list(self.reasons)
-        for label, finding in (("Not", Finding.EXCLUDED), ("Not measured", Finding.UNKNOWN)):
-            some = [f"{c.name} ({c.text})" for c in self.causes if c.finding is finding]
-            said += [f"{label}: {'; '.join(some)}."] if some else []
-        small = [c for c in self.causes if c.finding is Finding.PRESENT and c.weight < PART]
-        return said + [f"Measured too: {c.name} ({c.text})." for c in small]
-
 
 def explain(m: Measured) -> Stall | None:
     """The stall of a refinement, None where the order is as usual or too little is known."""
     orders = m.orders
-    if not (m.cells and (m.lost or stalls(m))):
+    if not (m.cells and (m.ended or stalls(m))):
         return None
+    before, last = tuple(orders[:-1]), m.cells[-1]
     if not stalls(m):
-        end = (Cause("a lost run", Finding.SHOWN, 1.0, m.lost), *_crossings_alone(m))
-        where = f"the finest run that finished has {m.cells[-1]} cells"
-        return Stall(where, orders[-1] if orders else None, tuple(orders[:-1]), end)
-    before = f"; {', '.join(f'{p:.2f}' for p in orders[:-1])} before" if orders[1:] else ""
-    where = f"from {m.cells[-2]} to {m.cells[-1]} cells the order is {orders[-1]:.2f}{before}"
-    where += f"; {m.lost}" if m.lost else ""
+        end = Cause(CauseCode.FAILED_RUN, Finding.SHOWN, 1.0, ended=m.ended)
+        return Stall(None, last, orders[-1] if orders else None, before, (end, *_crossings_alone(m)), m.ended)
     others = [_particles(m), _gaps(m), _time_step(m), _floor(m)]
     causes = [_crossings(m, max(c.weight for c in others)), *others]
     rank = list(Finding)
     causes.sort(key=lambda c: (-(c.weight >= NAMED), rank.index(c.finding), -c.weight))
-    return Stall(where, orders[-1], tuple(orders[:-1]), tuple(causes))
+    return Stall(m.cells[-2], last, orders[-1], before, tuple(causes), m.ended)
 
 
 def stalls(m: Measured) -> bool:
@@ -165,52 +168,46 @@ def _judged(weight: float) -> Finding:
 
 def _particles(m: Measured) -> Cause:
     """The same cells with more particles, or with fewer where none has more."""
-    name = "quadrature with so few particles"
     if m.other is None:
-        return Cause(name, Finding.UNKNOWN, 0.0, "one particle count only; a list for --ppc adds others")
+        return Cause(CauseCode.QUADRATURE, Finding.UNKNOWN, 0.0)
     ppc, errors = m.other
     more, change = ppc > m.ppc, errors[-1] / m.errors[-1] - 1
     weight = _share(m, -change * m.errors[-1]) if more else _share(m, m.errors[-1] * (1 - m.errors[-1] / errors[-1]))
-    word = "smaller" if change < 0 else "larger"
-    text = f"with {ppc} per cell in place of {m.ppc} the finest error is {abs(change):.0%} {word}"
+    numbers = {"ppc": float(m.ppc), "other_ppc": float(ppc), "change": change}
     if len(errors) > 1 and min(errors) > 0:
-        text += f" and its order {log(errors[-2] / errors[-1]) / log(m.cells[-1] / m.cells[-2]):.2f}"
-    return Cause(name, _judged(weight), weight, text)
+        numbers["order"] = log(errors[-2] / errors[-1]) / log(m.cells[-1] / m.cells[-2])
+    return Cause(CauseCode.QUADRATURE, _judged(weight), weight, numbers)
 
 
 def _gaps(m: Measured) -> Cause:
-    """Gaps that stay the same share of the spacing leave an error that refinement does not reduce as the order asks."""
-    name = "gaps and overlaps between domains"
+    """Gaps that stay the same part of the spacing leave an error that refinement does not reduce as the order asks."""
     if m.gaps[-1] is None or m.gaps[0] is None:
-        return Cause(name, Finding.EXCLUDED, 0.0, "this method knows points only")
+        return Cause(CauseCode.GAPS, Finding.EXCLUDED, 0.0)
     first, last = m.gaps[0], m.gaps[-1]
-    text = f"corners are off by {last:.1%} of the particle spacing, {first:.1%} at {m.cells[0]} cells"
+    numbers = {"gap": last, "gap_first": first, "cells_first": float(m.cells[0])}
     if last < SPACING or first <= 0:
-        return Cause(name, Finding.EXCLUDED, 0.0, text)
+        return Cause(CauseCode.GAPS, Finding.EXCLUDED, 0.0, numbers)
     best = _best([p for p in m.peers if p.gap is not None and p.gap < last / 2], m)
-    text += f"; {best.method} has {best.gap:.1%} and order {best.order:.2f}" if best else ""
     falls = log(first / last) / log(m.cells[-1] / m.cells[0])  # 1 where corners are as near as the motion is smooth
     weight = min(1.0, max(0.0, 1 - falls))
-    return Cause(name, Finding.PRESENT if weight >= PART else Finding.EXCLUDED, weight, text)
+    finding = Finding.PRESENT if weight >= PART else Finding.EXCLUDED
+    return Cause(CauseCode.GAPS, finding, weight, numbers, best)
 
 
 def _time_step(m: Measured) -> Cause:
-    name = "the time step"
     if m.halved is None:
-        return Cause(name, Finding.UNKNOWN, 0.0, "no run with half of it; a list for --courant adds one")
+        return Cause(CauseCode.TIME_STEP, Finding.UNKNOWN, 0.0)
     change = m.halved / m.errors[-1] - 1
     weight = _share(m, -change * m.errors[-1])
-    text = f"half of it changes the finest error by {change:+.1%}"
-    return Cause(name, _judged(weight), weight, text)
+    return Cause(CauseCode.TIME_STEP, _judged(weight), weight, {"change": change})
 
 
 def _floor(m: Measured) -> Cause:
-    name = "round-off"
     if m.floor <= 0:
-        return Cause(name, Finding.UNKNOWN, 0.0, "no floor is known")
+        return Cause(CauseCode.ROUND_OFF, Finding.UNKNOWN, 0.0)
     above = m.errors[-1] / m.floor
     weight = min(1.0, CLEAR / above)
-    return Cause(name, _judged(weight), weight, f"the finest error is {above:.1g} times its floor")
+    return Cause(CauseCode.ROUND_OFF, _judged(weight), weight, {"times": above})
 
 
 def _crossings(m: Measured, explained: float) -> Cause:
@@ -218,22 +215,20 @@ def _crossings(m: Measured, explained: float) -> Cause:
 
     Every run of a moving body has them, so nothing shows them by themselves: a run without them has another motion.
     """
-    name, first, last = "cell crossings", m.crossings[0], m.crossings[-1]
-    text = f"a particle passes {last:.1f} faces, {first:.1f} at {m.cells[0]} cells"
+    first, last = m.crossings[0], m.crossings[-1]
     if last < PART:
-        return Cause(name, Finding.EXCLUDED, 0.0, f"a particle passes {last:.2g} faces")
+        return Cause(CauseCode.CROSSINGS, Finding.EXCLUDED, 0.0, {"faces": last})
+    numbers = {"faces": last, "faces_first": first, "cells_first": float(m.cells[0])}
     weight = min(1.0, last) * (1 - explained)
     early, late = m.excess[-2:]
     if early > 0.05 * m.errors[-2] and m.crossings[-1] > m.crossings[-2] > 0 and late > 0:
         power = log(late / early) / log(m.crossings[-1] / m.crossings[-2])
-        ratio = m.crossings[-1] / m.crossings[-2]
         if power >= FOLLOWS:
             weight = max(weight, min(1.0, power))
-            text += f"; from {m.cells[-2]} to {m.cells[-1]} cells they grow {ratio:.1f}-fold and the error beyond "
-            text += f"order {m.order:g} {late / early:.1f}-fold"
+            numbers |= {"cells": float(m.cells[-1]), "cells_before": float(m.cells[-2]), "usual": m.order}
+            numbers |= {"ratio": m.crossings[-1] / m.crossings[-2], "excess_ratio": late / early}
     best = _best([p for p in m.peers if abs(p.crossings / last - 1) <= ALIKE], m)
-    text += f"; {best.method} passes {best.crossings:.1f} and has order {best.order:.2f}" if best else ""
-    return Cause(name, Finding.PRESENT, weight, text)
+    return Cause(CauseCode.CROSSINGS, Finding.PRESENT, weight, numbers, best)
 
 
 def _best(peers: list[Peer], m: Measured) -> Peer | None:
@@ -244,6 +239,6 @@ def _best(peers: list[Peer], m: Measured) -> Peer | None:
 
 def _crossings_alone(m: Measured) -> list[Cause]:
     """Crossings where no order is known to fall."""
-    last = m.crossings[-1]
-    text = f"a particle passes {last:.1f} faces at {m.cells[-1]} cells"
-    return [Cause("cell crossings", Finding.PRESENT, 0.0, text)] if last >= PART else []
+    numbers = {"faces": m.crossings[-1], "cells": float(m.cells[-1])}
+    enough = m.crossings[-1] >= PART
+    return [Cause(CauseCode.CROSSINGS, Finding.PRESENT, 0.0, numbers)] if enough else []

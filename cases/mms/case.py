@@ -15,7 +15,7 @@ import numpy as np
 from mpm_verify.cases.harness.environment import environment
 from mpm_verify.cases.harness.memory import forget_peak, peak_memory
 from mpm_verify.cases.harness.store import Arrays
-from mpm_verify.cases.harness.study import Failure, parameters
+from mpm_verify.cases.harness.study import parameters
 from mpm_verify.cases.judging.records import Expectation
 from mpm_verify.cases.mms.expectations import JUDGED_QUANTITY, expected
 from mpm_verify.cases.mms.gaps import LOOKS, Gaps
@@ -27,11 +27,12 @@ from mpm_verify.mms.blind_spots import BlindSpot
 from mpm_verify.mms.energy import check_energy
 from mpm_verify.mms.manufacture import Manufactured, manufacture
 from mpm_verify.solver.boundary import box, moving
+from mpm_verify.solver.failure import Failure, FailureKind, RunFailed
 from mpm_verify.solver.layout import CENTRED, Layout, parallelograms
 from mpm_verify.solver.plugins import LAYOUTS, MATERIALS, METHODS, SOLUTIONS, TRANSFERS, create, is_file, load
 from mpm_verify.solver.plugins import canonical as canonical_name
 from mpm_verify.solver.state import Floats, Grid, Particles
-from mpm_verify.solver.step import Model, RunFailed, Scheme, advance, check_time_step
+from mpm_verify.solver.step import Model, Scheme, advance, check_time_step
 from mpm_verify.solver.stress_update import check_stress_update
 
 __all__ = ["AXES", "JUDGED", "NORMS", "QUANTITIES", "QUICK", "Result", "Run", "execute"]
@@ -74,6 +75,16 @@ def check(runs: Sequence[Run]) -> None:
             from mpm_verify.mms.check import check as check_solution  # derives the fields: some tenths of a second
 
             check_solution(solution, material, tuple(sorted(counts)))
+
+
+def multiple(run: Run) -> int:
+    """Number of cells of the width whose multiples fill the body; 1 for those of this package, which are square."""
+    if not is_file(run.solution):
+        return 1
+    from mpm_verify.mms.check import sides  # see check
+
+    ratio = sides(create(SOLUTIONS, run.solution))
+    return ratio.denominator if ratio else 1
 
 
 def expectation(run: Run, quantity: str, norm: str) -> Expectation | None:
@@ -178,7 +189,7 @@ def execute(run: Run, tick: Callable[[float], None] = lambda share: None) -> tup
     failure, started, used = None, time.perf_counter(), time.process_time()
     try:
         if not run.force:
-            check_time_step(model, " (--force runs it all the same)")
+            check_time_step(model)
         if comparison.packing:
             comparison.packing.begin(model, refuse=run.layout != "uniform")
         for step in range(steps):
@@ -189,12 +200,12 @@ def execute(run: Run, tick: Callable[[float], None] = lambda share: None) -> tup
                     comparison.packing.look(model)
             tick((step + 1) / steps)
         comparison(model.particles, model.time)
-    except RunFailed as reason:
-        failure = Failure(reason.reason, reason.step, reason.particle, reason.cell)
+    except RunFailed as ended:
+        failure = ended.failure
     wall, cpu = time.perf_counter() - started, time.process_time() - used
     errors, scale = comparison.norms.errors(), magnitude(comparison.exact, model.particles, steps * model.dt)
     if not failure and not np.isfinite([list(norms.values()) for norms in errors.values()]).all():
-        failure = Failure("an error that is not finite", model.steps)
+        failure = Failure(FailureKind.ERROR_NOT_FINITE, model.steps)
     arrays = snapshot(run, model, comparison)
     result = Result(
         run=run,

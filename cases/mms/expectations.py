@@ -11,6 +11,7 @@ from typing import Any
 
 from mpm_verify.cases.judging.records import Expectation
 from mpm_verify.cases.mms.run import QUANTITIES
+from mpm_verify.solver.failure import FailureKind
 from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS, create, is_file, split
 
 JUDGED_QUANTITY = ("u", "rms")
@@ -18,8 +19,8 @@ JUDGED_PPC = (4, 9)
 SMALL = 1e-5
 STALL = 1.8  # the lower end of the band around order 2
 
-# Orders of u, v, F and sigma; `stalls` and the cells on which it shows at the latest; `diverges`; or `lost` and the
-# reason that ends the runs.
+# Orders of u, v, F and sigma; `stalls` and the cells on which it shows at the latest; `diverges`; or `failed` and the
+# kind of failure that ends all runs.
 REGISTERED: dict[str, dict[str, str]] = {
     "axis_aligned": {
         "mpm": "diverges",
@@ -67,7 +68,7 @@ REGISTERED: dict[str, dict[str, str]] = {
         "bspline3": "stalls 128",
     },
     "expanding_ring": {
-        "mpm": "lost det F",
+        "mpm": "failed inverted",
         "gimp": "stalls 64",
         "cpgimp": "stalls 96",
         "cpdi": "2 1.9 1.5 1.65",
@@ -76,9 +77,9 @@ REGISTERED: dict[str, dict[str, str]] = {
         "bspline3": "stalls 96",
     },
     "generalised_vortex": {
-        "mpm": "lost det F",
+        "mpm": "failed inverted",
         "gimp": "stalls 64",
-        "cpgimp": "lost wider than two cells",
+        "cpgimp": "failed domain_too_wide",
         "cpdi": "2 1.9 1.6 1.9",
         "cpdi2": "2 2 1.6 1.9",
         "bspline2": "stalls 64",
@@ -110,7 +111,7 @@ OWN_MATERIAL = ("expanding_ring",)  # with another its edges are not free of tra
 # Who says so: that u of this method converges at order 2, or does not, once particles cross cells.
 LITERATURE = {
     ("mpm", "diverges"): "Steffen, Kirby & Berzins 2008",
-    ("mpm", "lost"): "Steffen, Kirby & Berzins 2008",
+    ("mpm", "failed"): "Steffen, Kirby & Berzins 2008",
     ("gimp", "stalls"): "Wallstedt & Guilkey 2008",
     ("cpdi", "2"): "Sadeghirad, Brannon & Burghardt 2011",
     ("cpdi2", "2"): "Sadeghirad, Brannon & Guilkey 2013",
@@ -168,8 +169,8 @@ def registered(solution: str, method: str, quantity: str) -> Expectation:
             return Expectation(None, source=source)
         case ["stalls", cells]:
             return Expectation(None, stall=STALL, stall_h=1 / int(cells), source=source)
-        case ["lost", *reason]:
-            return Expectation(None, lost=" ".join(reason), source=source)
+        case ["failed", kind]:
+            return Expectation(None, failed=FailureKind(kind), source=source)
     order = float(words[QUANTITIES.index(quantity)])
     if quantity == "u" and order == 2:
         return Expectation(order, source=source)
@@ -213,7 +214,7 @@ def later_with_9(method: str, solution: str, expectation: Expectation) -> bool:
 def small(solution: Any) -> bool:
     """Whether no particle will cross a cell: amplitudes A, B, G that are next to nothing, of a body between walls.
 
-    At the free edge of a ring classical MPM loses its det F whatever the amplitude.
+    At the free edge of a ring particles of classical MPM are inverted whatever the amplitude.
     """
     sizes = [abs(getattr(solution, name)) for name in ("A", "B", "G") if hasattr(solution, name)]
     held = solution.boundary in ("roller", "fixed")

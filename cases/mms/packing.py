@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from mpm_verify.cases.mms.run import Packed
 from mpm_verify.mms.manufacture import Manufactured
+from mpm_verify.solver.failure import FailureKind, RunFailed
 from mpm_verify.solver.layout import Layout, shared_corners
-from mpm_verify.solver.model import RunFailed
 from mpm_verify.solver.state import Floats, Grid, Ints
 from mpm_verify.solver.step import Model
 
@@ -54,7 +54,7 @@ class Packing:
         """Count at the start. Raises RunFailed with the cell if a full one holds no particle, unless told not to."""
         self.look(model)
         if refuse and self.fewest == 0:
-            raise RunFailed("no particle in a cell that the body fills", 0, -1, self.cell)
+            raise RunFailed(FailureKind.EMPTY_CELL, cell=self.cell)
 
     @property
     def packed(self) -> Packed:

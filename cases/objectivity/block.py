@@ -10,12 +10,13 @@ from numpy.typing import NDArray
 from mpm_verify.cases.harness.checks import Check, Curves
 from mpm_verify.cases.objectivity.exact import ramped_column, rotated
 from mpm_verify.cases.objectivity.turning_block import Block, execute
+from mpm_verify.solver.failure import Failure
 from mpm_verify.solver.plugins import NEGATIVE_CONTROLS, available
 from mpm_verify.solver.state import Floats
 
 PRINTED, SMALL, REST = "block of 1 m", "block of 1 cm", "block of 1 m, not turned"
 GROUP = "Figure 2, the CPDI run"
-Found = Mapping[str, tuple[Curves, str]]
+Found = Mapping[str, tuple[Curves, Failure | None]]
 
 
 def blocks(block: Block) -> dict[str, Block]:
@@ -24,7 +25,7 @@ def blocks(block: Block) -> dict[str, Block]:
     return named | {name: replace(block, rate=name) for name in available(NEGATIVE_CONTROLS)}
 
 
-def start(block: Block, executor: Executor) -> dict[str, Future[tuple[Curves, str]]]:
+def start(block: Block, executor: Executor) -> dict[str, Future[tuple[Curves, Failure | None]]]:
     """All of them, the longest first."""
     named = blocks(block)
     return {name: executor.submit(execute, named[name]) for name in sorted(named, key=lambda name: -named[name].steps)}
@@ -48,9 +49,9 @@ def misses(curve: Mapping[str, Floats], block: Block) -> Floats:
 
 def checks(block: Block, found: Found) -> list[Check]:
     """What the runs are held against; stresses in units of the mean vertical stress at the end of the ramp."""
-    if any(found[name][1] for name in (PRINTED, SMALL, REST)):
-        ended = [name for name in (PRINTED, SMALL, REST) if found[name][1]]
-        return [Check(GROUP, f"{name}: {found[name][1]}", np.nan, 0.0, "absolute", "") for name in ended]
+    ended = {name: found[name][1] for name in (PRINTED, SMALL, REST) if found[name][1]}
+    if ended:
+        return [Check(GROUP, name, np.nan, 0.0, "absolute", "", failure=why) for name, why in ended.items()]
     small, large, rest = (found[name][0]["mean"] for name in (SMALL, PRINTED, REST))
     late = turning(small)
     K0 = block.nu / (1 - block.nu)

@@ -75,8 +75,8 @@ def curves(block: Block, found: full.Found, errors: dict[str, Floats], controls:
         away = max(
             float(np.abs(curve[c] - kinematic.exact_figure2(block, curve["t"])[c]).max()) for c in ("xx", "yy", "xy")
         )
-        run, failed = found[name]
-        miss = np.inf if failed else full.misses(run["mean"], block).max()
+        run, failure = found[name]
+        miss = np.inf if failure else full.misses(run["mean"], block).max()
         kept[f"control/{name}"] = {
             "kinematic": np.array([away]),
             "run": np.array([miss]),

@@ -23,10 +23,11 @@ from mpm_verify.cases.harness.checks import Curves
 from mpm_verify.solver._jit import use_threads
 from mpm_verify.solver.basis.cpdi import Cpdi
 from mpm_verify.solver.boundary import moving
+from mpm_verify.solver.failure import Failure, RunFailed
 from mpm_verify.solver.layout import per_side, rectangle
 from mpm_verify.solver.material.hypoelastic import Hypoelastic
 from mpm_verify.solver.state import Floats, Grid, Particles
-from mpm_verify.solver.step import Model, RunFailed, advance
+from mpm_verify.solver.step import Model, advance
 
 OMEGA = pi / 2  # a quarter turn in a second
 SAMPLES = 200  # of each stage, at most
@@ -158,7 +159,7 @@ def spin(model: Model, block: Block) -> None:
     model.particles.v += (model.particles.x - block.L / 2) @ back.T / model.dt
 
 
-def execute(block: Block) -> tuple[Curves, str]:
+def execute(block: Block) -> tuple[Curves, Failure | None]:
     """Curves of a run, and why it ended early if it did; stresses in units of |sigma_v|.
 
     `mean`: t, angle, means over the particles xx, yy, zz, xy, in the frame of the box own_xx, own_yy, own_xy, and
@@ -166,7 +167,8 @@ def execute(block: Block) -> tuple[Curves, str]:
     averaged over the turn.
     """
     use_threads(1)
-    model, load, rows, failed = setup(block), Gravity(block), [], ""
+    model, load, rows = setup(block), Gravity(block), []
+    failure = None
     every, total, looks = max(1, block.steps // SAMPLES), np.zeros((len(model.particles), 3)), 0
     try:
         for step in range(1, 2 * block.steps + 1):
@@ -179,15 +181,15 @@ def execute(block: Block) -> tuple[Curves, str]:
                 if step > block.steps:
                     total[model.particles.id] += own  # rows change places when particles cross cells
                     looks += 1
-    except RunFailed as error:
-        failed = f"{error.reason} at t = {model.time:.3g}"
+    except RunFailed as ended:
+        failure = ended.failure
     scale = np.array([1.0, 1.0] + 8 * [abs(block.sigma_v)])
     names = ("t", "angle", "xx", "yy", "zz", "xy", "own_xx", "own_yy", "own_xy", "shear")
     mean = dict(zip(names, (np.array(rows).reshape(-1, len(names)) / scale).T, strict=True))
     own = total / max(1, looks) / abs(block.sigma_v)
     X = model.particles.in_initial_order("X")
     field = {"X": X[:, 0], "Y": X[:, 1], "own_xx": own[:, 0], "own_yy": own[:, 1], "own_xy": own[:, 2]}
-    return {"mean": mean, "field": field}, failed
+    return {"mean": mean, "field": field}, failure
 
 
 def in_box(model: Model, block: Block) -> Floats:

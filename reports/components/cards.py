@@ -9,6 +9,7 @@ from mpm_verify.cases.judging.order import Outcome
 from mpm_verify.reports.components import audited, words
 from mpm_verify.reports.components.stalls import short
 from mpm_verify.reports.frames import Record
+from mpm_verify.reports.sentences import commands, verdicts
 
 DIVERGES = {
     Outcome.PASS: "Does not converge, as registered before the run",
@@ -27,13 +28,14 @@ PLAIN = {
 
 @dataclass(frozen=True)
 class Card:
-    """What one card says. `outcome` picks word, shape and colour; `facts` are (label, text)."""
+    """What one card says. `outcome` picks word, shape and colour; `facts` are (label, text); `command` would decide."""
 
     outcome: str
     title: str
     headline: str
     facts: tuple[tuple[str, str], ...]
     reason: str
+    command: str
     plain: str
     stall: str
     unseen: str
@@ -64,7 +66,7 @@ def _card(record: Record, found: Finding) -> Card:
     facts = (
         ("Observed order", words.order(v.observed)),
         ("Interval", words.interval(v.interval)),
-        ("Expected", words.expected(d)),
+        ("Expected", verdicts.registered(e)),
         ("Expectation from", (e.source if e else "") or "not given"),
     )
     falls = diverges and e is not None and e.stall is not None
@@ -75,7 +77,8 @@ def _card(record: Record, found: Finding) -> Card:
         title,
         headline,
         facts,
-        _sentence(v.reason),
+        words.sentence(verdicts.said(v.reason)),
+        commands.command(record.study, found),
         plain,
         short(found),
         audited.short(record, d.run.solution),
@@ -103,9 +106,3 @@ def divergence(record: Record, found: Finding) -> str:
     )
     text += f" ({words.sci(true[0][1])} to {words.sci(true[-1][1])}), and printed falls {fall:.1f}-fold"
     return f"{text} ({words.sci(high)} to {words.sci(low)}), a seeming order of {seeming}."
-
-
-def _sentence(reason: str) -> str:
-    """A capital letter in front, a full stop behind."""
-    reason = words.prose(reason)
-    return f"{reason[:1].upper()}{reason[1:]}." if reason and not reason.endswith(".") else reason

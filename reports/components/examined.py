@@ -11,6 +11,7 @@ from mpm_verify.cases.harness.store import Store, StoreError
 from mpm_verify.reports.components.film import Film
 from mpm_verify.reports.components.page import Add, Image, adder, template
 from mpm_verify.reports.components.show import Table
+from mpm_verify.reports.sentences import failures
 
 WAYS = {"relative": "± {} of it", "absolute": "± {}", "at least": "or more", "at most": "or less"}
 
@@ -72,7 +73,15 @@ def row(check: Check) -> tuple[str, ...]:
     bound = check.way.startswith("at")
     allowed = WAYS[check.way].format(f"{check.within:.3g}")
     miss = "" if bound else f"{check.miss:.2g}"
-    return (check.name, str(check.outcome), digits(check.found), digits(check.expected), allowed, miss, check.source)
+    return (
+        failures.check(check.name, check.failure),
+        str(check.outcome),
+        digits(check.found),
+        digits(check.expected),
+        allowed,
+        miss,
+        check.source,
+    )
 
 
 def digits(value: float) -> str:
@@ -82,5 +91,9 @@ def digits(value: float) -> str:
 
 def _write_csv(path: Path, checks: Sequence[Check]) -> None:
     """All checks with full digits."""
-    rows = [{**asdict(check), "miss": check.miss, "outcome": str(check.outcome)} for check in checks]
+    rows = [
+        {**asdict(check), "miss": check.miss, "outcome": str(check.outcome)}
+        | {"failure": str(check.failure.kind) if check.failure else None}
+        for check in checks
+    ]
     pd.DataFrame(rows).to_csv(path, index=False)

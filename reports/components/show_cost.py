@@ -41,14 +41,14 @@ def _is_u(found: Finding) -> bool:
 
 
 def _cell(record: Record, found: Finding | None) -> str:
-    """`2.00, 1.2e-4`; `lost` where no run finished."""
+    """`2.00, 1.2e-4`; `failed` where no run finished."""
     if found is None:
         return words.DASH
     finished = [(run, e) for run, e in record.errors(record.series_of(found.plan), "u", "rms")]
     if not finished:
-        return "lost"
+        return "failed"
     result = record.result(finished[-1][0])
     share = finished[-1][1] / result.scale["u"] if result and result.scale.get("u") else float("nan")
     orders = found.verdict.local_orders
     text = f"{words.order(orders[-1]) if orders else words.DASH}, {share:.1e}".replace("e-0", "e-").replace("e+00", "")
-    return text if not found.levels[-1].ended else f"{text} at {words.cell_size(finished[-1][0].cells)}, then lost"
+    return text if not found.levels[-1].ended else f"{text} at {words.cell_size(finished[-1][0].cells)}, then failed"

@@ -8,6 +8,7 @@ from mpm_verify.cases.mms.run import Run
 from mpm_verify.reports.components import words
 from mpm_verify.reports.components.show import Row, Table
 from mpm_verify.reports.frames import Record
+from mpm_verify.reports.sentences import failures
 
 
 def runs(record: Record) -> Table:
@@ -80,7 +81,7 @@ def _run(record: Record, run: Run) -> Row:
         return _with_solution(record, (*head, "not run", *point, *(words.DASH,) * 6, "to be done"), run)
     numbers = (f"{result.steps}", f"{result.particles}", words.few(crossed(result)), words.few(result.gap))
     costs = (f"{result.wall_s:.2f} s", f"{result.peak_memory_mb:.0f} MB")
-    reason = words.prose(str(result.failure)) if result.failure else ""
+    reason = failures.failure(result.failure) if result.failure else ""
     return _with_solution(record, (*head, result.status, *point, *numbers, *costs, reason), run)
 
 

@@ -6,6 +6,7 @@ from mpm_verify.cases.harness.verdicts import STALLS, Finding
 from mpm_verify.cases.judging.stall import Stall
 from mpm_verify.reports.components import words
 from mpm_verify.reports.frames import Record
+from mpm_verify.reports.sentences import stalls as sentences
 
 
 @dataclass(frozen=True)
@@ -27,7 +28,7 @@ def short(found: Finding) -> str:
     """One sentence for the card of a finding; empty without a stall."""
     if not found.stall:
         return ""
-    return f"{words.prose(found.stall.where[:1].upper() + found.stall.where[1:])}. {_cause(found.stall)}"
+    return f"{words.sentence(sentences.where(found.stall))} {sentences.cause(found.stall)}"
 
 
 def looked(record: Record) -> bool:
@@ -35,19 +36,6 @@ def looked(record: Record) -> bool:
     return any(len(f.verdict.local_orders) > 1 for f in record.findings if (f.plan.quantity, f.plan.norm) == STALLS)
 
 
-def _cause(stall: Stall) -> str:
-    names = [cause.name for cause in stall.named]
-    return f"By the numbers: {' and '.join(names)}." if names else "The numbers name no cause."
-
-
 def _told(record: Record, found: Finding, stall: Stall) -> Told:
     title = record.label(found.plan.run)
-    sentences = tuple(words.prose(_names(text)) for text in stall.why)
-    return Told(title, words.prose(stall.where), _cause(stall), sentences)
-
-
-def _names(text: str) -> str:
-    """Methods as people write them, where a sentence compares with one."""
-    for name, written in words.METHODS.items():
-        text = text.replace(f"; {name} ", f"; {written} ")
-    return text
+    return Told(title, sentences.where(stall), sentences.cause(stall), tuple(sentences.why(stall)))

@@ -1,10 +1,8 @@
 """How names, numbers and outcomes are written: one place, so that every table, figure and sentence says it alike."""
 
 import math
-import re
 from typing import Any
 
-from mpm_verify.cases.harness.study import QuantityPlan
 from mpm_verify.cases.mms.run import Run
 
 METHODS = {
@@ -58,9 +56,9 @@ def order(value: float | None) -> str:
     return "∞" if math.isinf(value) else f"{value:.2f}".replace("-0.00", "0.00").replace("-", MINUS)
 
 
-def percent(share: float) -> str:
-    """A share of 0.034 as 3.4 %."""
-    return f"{100 * share:.1f} %"
+def percent(part: float, digits: int = 1, sign: str = "") -> str:
+    """A fraction of 0.034 as 3.4 %."""
+    return f"{100 * part:{sign}.{digits}f} %".replace("-", MINUS)
 
 
 def interval(ends: tuple[float, float] | None) -> str:
@@ -85,20 +83,20 @@ def cell_size(cells: int) -> str:
     return f"1/{cells}"
 
 
-def expected(declared: QuantityPlan[Any]) -> str:
-    """What was registered: an order with its band, `diverges`, or a dash."""
-    e = declared.expectation
-    if e is None:
-        return DASH
-    if e.order is None:
-        return e.kind
-    return f"{order(e.order)} ({order(e.order - e.below)} to {order(e.order + e.above)})"
+def size(h: float) -> str:
+    """1/64 for a cell size of 0.015625; the number itself where it is not one over a whole number."""
+    cells = round(1 / h)
+    return cell_size(cells) if cells > 1 and abs(cells * h - 1) < 1e-5 else f"{h:.4g}"
 
 
-def prose(reason: str) -> str:
-    """A reason for a reader: `det F ≤ 0` for `det F <= 0`, true minus signs, and a space before %."""
-    text = reason.replace("<=", "≤").replace(">=", "≥")
-    return re.sub(r"(?<=\d)%", " %", re.sub(r"(?<=[ (+])-(?=\d)", MINUS, text))
+def short(error: float) -> str:
+    """Two digits: 4.8e-3."""
+    return f"{error:.1e}".replace("e-0", "e-").replace("e+0", "e+")
+
+
+def sentence(text: str) -> str:
+    """A capital letter in front, a full stop behind."""
+    return f"{text[:1].upper()}{text[1:]}." if text else ""
 
 
 def count(number: int, noun: str) -> str:

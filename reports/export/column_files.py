@@ -13,6 +13,7 @@ from mpm_verify.cases.column.run import ColumnRun
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.reports.export.vtk import write_series
 from mpm_verify.reports.frames import joined
+from mpm_verify.reports.sentences import failures
 
 MEASURED = {  # measured numbers that have the name of a parameter: their names in tables
     "damping": "damping_energy", "transfer": "transfer_energy", "void": "void_fraction", "courant": "courant_reached",
@@ -26,7 +27,7 @@ def tables(collapse: ColumnAnalysis, store: Store, folder: Path) -> None:
         result = collapse.results.get(run.digest)
         if result:
             parameters = plain(run, collapse.study.axes)
-            failure = result.failure.reason if result.failure else ""
+            failure = failures.cause(result.failure) if result.failure else ""
             head = {"digest": run.digest, "status": result.status, "failure": failure}
             rows.append(joined(head, parameters, measured(result.values)))
             columns = {name: values for name, values in read_curves(store, result).items() if values.ndim == 1}

@@ -17,32 +17,61 @@ from mpm_verify.cases.harness.case import case_named
 from mpm_verify.cases.harness.checks import Check
 from mpm_verify.cases.harness.study import ResultRecord
 from mpm_verify.cases.harness.verdicts import Finding
-from mpm_verify.cases.judging.stall import Stall
+from mpm_verify.cases.judging.records import Ended
+from mpm_verify.cases.judging.stall import Cause, Stall
 from mpm_verify.reports.frames import Record, joined
+from mpm_verify.reports.sentences import commands, failures, stalls
+from mpm_verify.solver.failure import Failure
 
 VERSION = 3
 Row = dict[str, Any]
 
 
 @dataclass(frozen=True)
+class FailureRow:
+    """Why a run could not go on; `particle` is -1 where none has to do with it."""
+
+    kind: str
+    step: int
+    particle: int
+    cell: list[int] | None
+    numbers: dict[str, float | None]
+
+
+@dataclass(frozen=True)
+class EndedRow:
+    """A level without an error."""
+
+    h: float
+    replicate: int
+    failure: FailureRow
+
+
+@dataclass(frozen=True)
 class CauseRow:
     """What was weighed as the cause of a stall; `weight` is the fraction of the excess that it explains."""
 
+    code: str
     name: str
     finding: str
     weight: float
-    text: str
+    numbers: dict[str, Any]
+    peer: str | None
+    measured: str
 
 
 @dataclass(frozen=True)
 class StallRow:
     """Where an order falls; `order` on the finest pair of levels, `before` on the coarser ones."""
 
+    coarser: int | None
+    cells: int
     where: str
     order: float | None
     before: list[float]
     named: list[str]
     causes: list[CauseRow]
+    ended: EndedRow | None
 
 
 @dataclass(frozen=True)
@@ -64,6 +93,10 @@ class VerdictRow(ShownRow):
 
     expected: float | str | None
     verdict: str
+    code: str
+    numbers: dict[str, Any]
+    failed: list[EndedRow]
+    wanted: dict[str, Any] | None
     reason: str
 
 
@@ -87,6 +120,7 @@ class RunRow:
 
     digest: str
     status: str
+    failure: FailureRow | None
     reason: str
     errors: dict[str, dict[str, float]] | None
     values: dict[str, float | None]
@@ -138,14 +172,20 @@ def document(record: Record, page: Path | None, more: Row) -> str:
 
 
 def verdict(record: Record, finding: Finding) -> Row:
-    """A judged quantity."""
-    expectation = finding.plan.expectation
+    """A judged quantity; `code`, `numbers`, `failed` and `wanted` are what `reason` says in words."""
+    study, expectation, r = record.study, finding.plan.expectation, finding.verdict.reason
     order = expectation.order if expectation else None
-    return shown(record, finding) | {
+    order = expectation.order if expectation else None
+    row = {
         "expected": expectation.kind if expectation and order is None else order,
         "verdict": str(finding.verdict.outcome),
-        "reason": finding.verdict.reason,
+        "code": str(r.code),
+        "numbers": finite(r.numbers),
+        "failed": [asdict(ended(end)) for end in r.failed],
+        "wanted": {**asdict(r.wanted), "command": commands.command(study, finding)} if r.wanted else None,
+        "reason": commands.reason(study, finding),
     }
+    return joined(shown(record, finding), row)
 
 
 def shown(record: Record, finding: Finding) -> Row:
@@ -160,8 +200,30 @@ def shown(record: Record, finding: Finding) -> Row:
 
 def stall(found: Stall) -> StallRow:
     """Where an order falls, and the causes that were weighed, the weightiest first."""
-    causes = [CauseRow(c.name, str(c.finding), c.weight, c.text) for c in found.causes]
-    return StallRow(found.where, found.order, list(found.before), [c.name for c in found.named], causes)
+    causes = [cause(each) for each in found.causes]
+    return StallRow(
+        found.coarser, found.cells, stalls.where(found), found.order, list(found.before),
+        [str(each.code) for each in found.named], causes, ended(found.ended) if found.ended else None,
+    )  # fmt: skip
+
+
+def cause(found: Cause) -> CauseRow:
+    """A cause of a stall; `measured` says in words what its numbers are."""
+    return CauseRow(
+        str(found.code), stalls.name(found), str(found.finding), found.weight, finite(found.numbers),
+        found.peer.method if found.peer else None, stalls.measured(found),
+    )  # fmt: skip
+
+
+def ended(end: Ended) -> EndedRow:
+    """A level without an error."""
+    return EndedRow(end.h, end.replicate, failure(end.failure))
+
+
+def failure(found: Failure) -> FailureRow:
+    """What ended a run, as codes and numbers."""
+    return FailureRow(str(found.kind), found.step, found.particle, list(found.cell) if found.cell else None,
+                      finite(found.numbers))  # fmt: skip
 
 
 def axes(record: Record) -> dict[str, list[Row]]:
@@ -197,7 +259,8 @@ def check_row(check: Check) -> CheckRow:
 def run_row(result: ResultRecord[Any]) -> Row:
     """A run with all its parameters."""
     row = RunRow(
-        result.digest, result.status, str(result.failure) if result.failure else "", result.errors or None,
+        result.digest, result.status, failure(result.failure) if result.failure else None,
+        failures.failure(result.failure) if result.failure else "", result.errors or None,
         finite(result.values), result.steps, result.particles, result.crossings, result.gap, result.wall_s,
     )  # fmt: skip
     return joined(finite(asdict(result.run)), asdict(row))

@@ -9,6 +9,7 @@ from mpm_verify.cases.harness.checks import Check
 from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.cases.judging.records import Outcome
 from mpm_verify.reports.frames import Record
+from mpm_verify.reports.sentences import commands, failures, stalls
 
 
 def writable(path: Path | None, option: str) -> None:
@@ -47,11 +48,12 @@ def _verdict(suite: Any, record: Record, finding: Finding) -> None:
         name=f"{plan.quantity} {plan.norm}, {plan.run.ppc} per cell",
         time=f"{sum(result.wall_s for result in finding.results if result):.3f}",
     )  # fmt: skip
+    said = commands.reason(record.study, finding)
     if v.outcome is not Outcome.PASS:
         kind = "error" if v.outcome is Outcome.ERROR else "failure"
-        ElementTree.SubElement(case, kind, type=str(v.outcome), message=v.reason)
-    stall = [finding.stall.where + ".", *finding.stall.reasons] if finding.stall else []
-    ElementTree.SubElement(case, "system-out").text = "\n".join([v.reason, *stall])
+        ElementTree.SubElement(case, kind, type=str(v.outcome), message=said)
+    stall = [stalls.where(finding.stall) + ".", *stalls.reasons(finding.stall)] if finding.stall else []
+    ElementTree.SubElement(case, "system-out").text = "\n".join([said, *stall])
 
 
 def _check(suite: Any, study: str, check: Check) -> None:
@@ -60,4 +62,6 @@ def _check(suite: Any, study: str, check: Check) -> None:
     if check.outcome is not Outcome.PASS:
         kind = "error" if check.outcome is Outcome.ERROR else "failure"
         message = f"{check.found:.8g}, expected {check.way} {check.expected:.8g}, {check.within:.3g}"
+        if check.failure:
+            message = failures.failure(check.failure)
         ElementTree.SubElement(case, kind, type=str(check.outcome), message=message)

@@ -2,6 +2,7 @@
 
 from mpm_verify.reports.components import words
 from mpm_verify.reports.frames import Record
+from mpm_verify.reports.sentences import commands, verdicts
 
 MARKS = {"PASS": "✅", "FAIL": "❌", "INCONCLUSIVE": "❔", "ERROR": "⚠️"}
 
@@ -16,7 +17,8 @@ def markdown(record: Record) -> str:
         for f in judged:
             d, v = f.plan, f.verdict
             cells = (f"{MARKS[v.outcome]} {v.outcome}", record.label(d.run), f"{d.quantity} in {d.norm}",
-                     words.order(v.observed), words.expected(d), v.reason)  # fmt: skip
+                     words.order(v.observed), verdicts.registered(d.expectation),
+                     commands.reason(study, f))  # fmt: skip
             lines.append(f"| {' | '.join(map(escaped, cells))} |")
     if found.checks:
         missed = [check for check in found.checks if check.outcome != "PASS"]

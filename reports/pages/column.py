@@ -14,6 +14,7 @@ from mpm_verify.reports.export.column_files import files, tables
 from mpm_verify.reports.figures import column as draw
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.pages._column_more import alive, films, refinement, set_up
+from mpm_verify.reports.sentences import failures
 
 WORDS = {True: "reproduced", False: "not reproduced", None: "cannot be told"}
 
@@ -72,7 +73,7 @@ def numbers(run: ColumnRun, result: ColumnResult | None) -> tuple[str, ...]:
         return (*[DASH] * 7, "not run")
     if result.failure:
         at = result.failure.step * result.dt
-        where = f"failed at {at:.3f} s (step {result.failure.step}): {result.failure.reason}"
+        where = f"failed at {at:.3f} s (step {result.failure.step}): {failures.cause(result.failure)}"
         return (*[DASH] * 7, where)
     v = result.values
     rest = f"{v['rest'] / run.tau:.2f}" if v["rest"] < float("inf") else "not yet"

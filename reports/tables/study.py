@@ -13,6 +13,8 @@ from mpm_verify.cases.mms.run import NORMS, QUANTITIES
 from mpm_verify.reports.components.cost import compares, costs
 from mpm_verify.reports.figures.local_orders import orders as pairs
 from mpm_verify.reports.frames import Record, joined
+from mpm_verify.reports.sentences import commands, failures
+from mpm_verify.reports.sentences import stalls as told
 
 Rows = list[dict[str, Any]]
 Key = tuple[Head, str, str]
@@ -56,7 +58,8 @@ def verdicts(record: Record) -> Rows:
         rows.append(
             named(record, d)
             | {"role": "judged" if d.judged else "shown", "expected": expected, "observed": v.observed}
-            | {"low": low, "high": high, "verdict": str(v.outcome) if e else None, "reason": v.reason if e else None}
+            | {"low": low, "high": high, "verdict": str(v.outcome) if e else None}
+            | {"code": str(v.reason.code) if e else None, "reason": commands.reason(record.study, found) if e else None}
             | {"source": e.source if e else None}
         )
     return rows
@@ -119,7 +122,8 @@ def runs(record: Record) -> Rows:
             row |= {"digest": result.digest}
             failure = result.failure
             if failure is not None:
-                row |= {"reason": failure.reason, "failed_step": failure.step, "failed_particle": failure.particle}
+                row |= {"failure": str(failure.kind), "reason": failures.cause(failure)}
+                row |= {"failed_step": failure.step, "failed_particle": failure.particle}
                 row |= {"failed_cell": " ".join(map(str, failure.cell)) if failure.cell else None}
         rows.append(row)
     return rows
@@ -131,8 +135,12 @@ def stalls(record: Record) -> Rows:
     for found in record.findings:
         for cause in found.stall.causes if found.stall else ():
             row = named(record, found.plan)
-            row |= {"where": found.stall.where if found.stall else None, "cause": cause.name}
-            rows.append(row | {"finding": str(cause.finding), "weight": cause.weight, "measured": cause.text})
+            row |= {
+                "where": told.where(found.stall) if found.stall else None,
+                "code": str(cause.code),
+                "cause": told.name(cause),
+            }
+            rows.append(row | {"finding": str(cause.finding), "weight": cause.weight, "measured": told.measured(cause)})
     return rows
 
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from mpm_verify.solver._jit import kernel
 from mpm_verify.solver.basis._splines import beyond
-from mpm_verify.solver.state import PAD, Floats
+from mpm_verify.solver.state import PAD
 from mpm_verify.solver.tensor import three
 from mpm_verify.solver.weights import FILL, Basis, outside
 
@@ -65,8 +65,3 @@ class Bspline2(Basis):
     support: ClassVar[int] = 9
     order: ClassVar[float] = 2.0
     fill = staticmethod(fill)
-
-    @staticmethod
-    def refusal(F: Floats, domain: Floats, dx: float) -> str:
-        """A wall."""
-        return "the particle is outside the grid, half a cell or more behind a wall"

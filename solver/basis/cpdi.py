@@ -140,8 +140,3 @@ class Cpdi(Basis):
         longest = np.maximum(*(np.hypot(*(F[:, :, 0].T * d[:, 0] + F[:, :, 1].T * d[:, 1])) for d in (one, other)))
         too_long: NDArray[np.bool_] = longest > (dx * domain[:, 4] if domain.shape[1] == 5 else inf)
         return too_long
-
-    @staticmethod
-    def refusal(F: Floats, domain: Floats, dx: float) -> str:
-        """A corner."""
-        return "a corner of the particle's domain is outside the grid"

@@ -11,9 +11,10 @@ import numpy as np
 from numba import prange
 
 from mpm_verify.solver._jit import BLOCK, F1, F2, f8, i8, kernel, nothing
+from mpm_verify.solver.failure import FailureKind
 from mpm_verify.solver.layout import Layout
 from mpm_verify.solver.state import Floats, Grid, Particles
-from mpm_verify.solver.weights import FILL, Basis, Place, bilinear, outside
+from mpm_verify.solver.weights import FILL, Basis, Place, Refusal, bilinear, outside
 
 
 @kernel(FILL)
@@ -100,9 +101,9 @@ class Cpdi2(Basis):
         move_all(particles.domain.ravel(), grid.origin, 1.0 / grid.dx, grid.ny, grid.velocity_acceleration, dt)
 
     @staticmethod
-    def refusal(F: Floats, domain: Floats, dx: float) -> str:
-        """Inside out, or a corner."""
+    def refusal(F: Floats, domain: Floats, dx: float) -> Refusal:
+        """Inside out, or a corner that left the grid."""
         one, two = domain[4:6] - domain[0:2], domain[6:8] - domain[2:4]
         if not one[0] * two[1] - one[1] * two[0] > 0:
-            return "the particle's domain is turned inside out"
-        return "a corner of the particle's domain is outside the grid"
+            return FailureKind.DOMAIN_INVERTED, {}
+        return FailureKind.OUTSIDE_GRID, {}

@@ -11,10 +11,11 @@ import numpy as np
 
 from mpm_verify.solver._jit import kernel
 from mpm_verify.solver.basis._gimp import half_lengths, slope, value
+from mpm_verify.solver.failure import FailureKind
 from mpm_verify.solver.layout import Layout, parallelograms
 from mpm_verify.solver.state import Floats
 from mpm_verify.solver.tensor import four
-from mpm_verify.solver.weights import FILL, Basis, Place, outside
+from mpm_verify.solver.weights import FILL, Basis, Place, Refusal, outside
 
 
 @kernel(inline=True)
@@ -78,9 +79,9 @@ class Cpgimp(Basis):
         return parallelograms(x, half[:, :, None] * np.eye(2))
 
     @staticmethod
-    def refusal(F: Floats, domain: Floats, dx: float) -> str:
-        """Too wide for sixteen neighbours, without width, or at the edge."""
+    def refusal(F: Floats, domain: Floats, dx: float) -> Refusal:
+        """Too wide for sixteen support nodes, without width, or at the edge."""
         half = np.abs(np.diagonal(F)) * domain
         if half.max() > dx:
-            return "the particle's domain is wider than two cells"
-        return "a neighbour is outside the grid" if half.min() > 0 else "the particle's domain has no width"
+            return FailureKind.DOMAIN_TOO_WIDE, {"width": 2 * float(half.max()) / dx, "limit": 2.0}
+        return FailureKind.OUTSIDE_GRID if half.min() > 0 else FailureKind.NO_WIDTH, {}

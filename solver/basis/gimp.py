@@ -11,10 +11,11 @@ import numpy as np
 
 from mpm_verify.solver._jit import kernel
 from mpm_verify.solver.basis._gimp import half_lengths, slope, value
+from mpm_verify.solver.failure import FailureKind
 from mpm_verify.solver.layout import Layout, parallelograms
 from mpm_verify.solver.state import Floats
 from mpm_verify.solver.tensor import three
-from mpm_verify.solver.weights import FILL, Basis, Place, outside
+from mpm_verify.solver.weights import FILL, Basis, Place, Refusal, outside
 
 LARGEST = 0.5 + 1e-9  # half length, in cells: beyond, a domain reaches a fourth node
 
@@ -84,8 +85,8 @@ class Gimp(Basis):
         return parallelograms(x, half[:, :, None] * np.eye(2))
 
     @staticmethod
-    def refusal(F: Floats, domain: Floats, dx: float) -> str:
-        """Too wide for nine neighbours, or at the edge."""
+    def refusal(F: Floats, domain: Floats, dx: float) -> Refusal:
+        """Too wide for nine support nodes, or at the edge."""
         if not domain.max() < LARGEST * dx:
-            return "the particle's domain is wider than a cell"
-        return "a neighbour is outside the grid"
+            return FailureKind.DOMAIN_TOO_WIDE, {"width": 2 * float(domain.max()) / dx, "limit": 1.0}
+        return FailureKind.OUTSIDE_GRID, {}

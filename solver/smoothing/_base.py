@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, get_args
 
 import numpy as np
 
+from mpm_verify.solver.failure import FailureKind
 from mpm_verify.solver.model import fail
 from mpm_verify.solver.rate_material import RateMaterial
 from mpm_verify.solver.smoothing._project import project, strained, strains
@@ -89,7 +90,7 @@ class Smoothing:
         place = (x - g.origin) / g.dx
         inside = ((place >= 0) & (place < (g.nx - 1, g.ny - 1))).all(axis=1)  # NaN is not
         if not inside.all():
-            fail(model, int(np.flatnonzero(~inside)[0]), "a particle is outside the grid")
+            fail(model, int(np.flatnonzero(~inside)[0]), FailureKind.OUTSIDE_GRID)
         nodes = self.where == "node"
         project(x, volumes(model.particles), values, g.origin, 1.0 / g.dx, g.nx, g.ny, nodes, out)
         return out

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
 NOTE = """
 Orders in rms with their bands, measured (see ARCHITECTURE.md); the source is that of u. With 4 or 9 particles per
-cell u is judged, the others are shown. `stalls`: the order falls below 1.8. `diverges`: the error grows, or runs are
-lost.
+cell u is judged, the others are shown. `stalls`: the order falls below 1.8. `diverges`: the error grows, or runs
+fail.
 """
 
 
@@ -84,9 +84,11 @@ def show(entries: "list[Entry]") -> None:
 
 def word(e: "Expectation") -> str:
     """`2 (1.8-2.3)`, `stalls` or `diverges`."""
+    from mpm_verify.reports.sentences import verdicts
+
     if e.order is not None:
         return f"{e.order:g} ({e.order - e.below:.2g}\N{EN DASH}{e.order + e.above:.2g})"
-    return e.kind
+    return verdicts.registered(e)
 
 
 def add(app: typer.Typer) -> None:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from mpm_verify.cases.harness.checks import Check
 from mpm_verify.reports.frames import Record
+from mpm_verify.reports.sentences import failures
 
 
 def show(record: Record, page: Path | None, lead: str = "") -> None:
@@ -45,7 +46,8 @@ def sentence(check: Check) -> str:
     within = f" within {check.within:.3g}" if check.within else ""
     way = f"{check.way} " if check.way.startswith("at") else ""
     relative = " of it" if check.way == "relative" else ""
-    return f"{check.name} is {check.found:.8g}, expected {way}{check.expected:.8g}{within}{relative} ({check.source})"
+    name = failures.check(check.name, check.failure)
+    return f"{name} is {check.found:.8g}, expected {way}{check.expected:.8g}{within}{relative} ({check.source})"
 
 
 def closest(checks: Sequence[Check]) -> str:

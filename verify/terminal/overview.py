@@ -7,7 +7,7 @@ from rich.table import Table
 from mpm_verify.reports.components.cards import summary
 from mpm_verify.reports.components.show_cost import overview
 from mpm_verify.reports.frames import Record
-from mpm_verify.verify.terminal.table import Listened, sentence, where
+from mpm_verify.verify.terminal.table import Listened, verdict, where
 
 
 def show_overview(record: Record, page: Path | None) -> None:
@@ -26,6 +26,6 @@ def show_overview(record: Record, page: Path | None) -> None:
     out.print(table)
     for finding in record.findings:
         if finding.plan.judged and finding.verdict.outcome != "PASS":
-            out.print(sentence(finding, several=True))
+            verdict(out, record.study, finding, several=True)
     out.print(f"\n{summary(record)}")
     where(out, page, "\nVerdicts, error against cost, where orders fall and why, and how it was made:")

@@ -10,10 +10,11 @@ from rich.table import Table
 from rich.text import Text
 
 from mpm_verify.cases.harness.axes import middle
-from mpm_verify.cases.harness.study import QuantityPlan
+from mpm_verify.cases.harness.study import QuantityPlan, Study
 from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.cases.judging.stall import Stall
 from mpm_verify.reports.frames import Record
+from mpm_verify.reports.sentences import commands, stalls, verdicts
 
 STYLES = {"PASS": "bold green", "FAIL": "bold red", "INCONCLUSIVE": "bold yellow", "ERROR": "bold magenta"}
 ALWAYS = ("u", "rms")
@@ -40,7 +41,7 @@ def show(record: Record, page: Path | None, console: Console | None = None) -> N
     several = len({finding.plan.run.solution for finding in found}) > 1
     for finding in found:
         if finding.plan.judged:
-            out.print(sentence(finding, several))
+            verdict(out, study, finding, several)
     for finding in found:
         if finding.stall:
             out.print(stall(finding, finding.stall, several))
@@ -79,7 +80,7 @@ def rows(finding: Finding) -> Iterator[tuple[str, ...]]:
     for level, passed in zip_longest(finding.levels, finding.crossings):
         cells, faces = f"{1 / level.h:.0f}", "" if passed is None else f"{passed:.1f}"
         if level.ended:
-            yield (*first, cells, "-", "", faces, level.ended)
+            yield (*first, cells, "-", "", faces, verdicts.ended(level.ended))
         else:
             local = order(next(orders, None)) if earlier else ""
             yield (*first, cells, f"{middle(level.errors):.3e}", local, faces, "")
@@ -92,13 +93,19 @@ def order(local: float | None) -> str:
     return "" if local is None else f"{local:.2f}"
 
 
+def verdict(out: Console, study: Study[Any], finding: Finding, several: bool = False) -> None:
+    """Print the verdict in words, and the command that would decide on a line of its own, to be copied whole."""
+    out.print(sentence(finding, several))
+    if command := commands.command(study, finding):
+        out.print(f"  this would decide: {command}", soft_wrap=True, markup=False)
+
+
 def sentence(finding: Finding, several: bool = False) -> Text:
     """The verdict in words."""
     d, v = finding.plan, finding.verdict
-    stalls = d.expectation is not None and d.expectation.stall is not None
-    expected = f"order {v.expected:g}" if v.expected is not None else "a stall" if stalls else "no convergence"
+    expected = f", {verdicts.expected(d.expectation)} expected" if d.expectation else ""
     text = Text(f"\n{v.outcome}", STYLES[v.outcome])
-    text.append(f"  {named(d, several)}, {expected} expected: {v.reason}.", "not bold default")
+    text.append(f"  {named(d, several)}{expected}: {verdicts.said(v.reason)}.", "not bold default")
     return text
 
 
@@ -111,6 +118,6 @@ def named(declared: QuantityPlan[Any], several: bool) -> str:
 def stall(finding: Finding, found: Stall, several: bool = False) -> Text:
     """Where the order falls and what explains it; what does not is in the report."""
     text = Text("\nSTALL", "bold")
-    text.append(f"  {named(finding.plan, several)}: {found.where}. ", "not bold default")
-    text.append(" ".join(found.reasons), "not bold default")
+    text.append(f"  {named(finding.plan, several)}: {stalls.where(found)}. ", "not bold default")
+    text.append(" ".join(stalls.reasons(found)), "not bold default")
     return text

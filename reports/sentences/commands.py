@@ -1,0 +1,68 @@
+"""What to type for the run that would decide: the command of the study with one option changed."""
+
+import os
+import shlex
+from collections.abc import Sequence
+from dataclasses import fields
+from typing import Any
+
+from mpm_verify.cases.harness.study import QuantityPlan, Study, head
+from mpm_verify.cases.harness.verdicts import Finding
+from mpm_verify.cases.judging.records import Action, Wanted
+from mpm_verify.reports.sentences import verdicts
+from mpm_verify.solver.failure import FailureKind
+from mpm_verify.solver.plugins import is_file, split
+
+
+def reason(study: Study[Any], found: Finding) -> str:
+    """What decided, and the option that asks for the run that would decide where nothing does."""
+    return verdicts.reason(found.verdict.reason, courants(study, found.plan))
+
+
+def command(study: Study[Any], found: Finding) -> str:
+    """The whole command of the study that would decide; empty where no run would, or none can be asked for."""
+    r = found.verdict.reason
+    if r.wanted is None:
+        return ""
+    if r.wanted.action is Action.FINISH:
+        return study.command if r.failed[0].failure.kind is FailureKind.NOT_RUN else ""
+    option = verdicts.options(r.wanted, courants(study, found.plan))
+    if not option:
+        return ""
+    return shlex.join(replaced(typed(study, found.plan, r.wanted), *option))
+
+
+def courants(study: Study[Any], plan: QuantityPlan[Any]) -> tuple[float, ...]:
+    """Courant numbers of the runs of a declared quantity, the largest first."""
+    return tuple(sorted({run.courant for run in study.runs if head(run) == plan.head}, reverse=True))
+
+
+def typed(study: Study[Any], plan: QuantityPlan[Any], wanted: Wanted) -> list[str]:
+    """The words of the study's command, or of one of its case that has the series where another made the study."""
+    words = shlex.split(study.command)
+    if words[:2] == ["verify", study.case]:
+        return [relative(word) for word in words]
+    usual = {item.name: item.default for item in fields(plan.run)}
+    words = ["verify", study.case]
+    for name, value in plan.head:
+        if value != usual[name] or name == "ppc":
+            words += [f"--{name.replace('_', '-')}", relative(str(value))]
+    return replaced(words, "--cells", ",".join(map(str, wanted.cells)))
+
+
+def replaced(words: Sequence[str], option: str, value: str) -> list[str]:
+    """The words with the option at their end, and nowhere else."""
+    kept: list[str] = []
+    for before, word in zip(["", *words], words, strict=False):
+        if option not in (before, word) and not word.startswith(f"{option}="):
+            kept.append(word)
+    return [*kept, option, value]
+
+
+def relative(word: str) -> str:
+    """A solution by its path as it is typed in this folder; any other word as it is."""
+    option, equals, specification = word.partition("=") if word.startswith("--solution=") else ("", "", word)
+    if not (is_file(specification) and os.path.isabs(specification)):
+        return word
+    path, parameters = split(specification)
+    return option + equals + ":".join(filter(None, [os.path.relpath(path), parameters]))

@@ -1,0 +1,62 @@
+"""Failures in words: what ended a run, where and when."""
+
+from mpm_verify.solver.failure import Failure, FailureKind
+
+CAUSES = {
+    FailureKind.INVERTED: "det F ≤ 0",
+    FailureKind.DOMAIN_INVERTED: "the particle's domain is turned inside out",
+    FailureKind.OUTSIDE_GRID: "the particle or a part of its domain left the grid",
+    FailureKind.DOMAIN_TOO_WIDE: "the particle's domain is too wide for its method",
+    FailureKind.NO_WIDTH: "the particle's domain has no width",
+    FailureKind.SLAB: "a particle domain is as wide as the grid",
+    FailureKind.NOT_FINITE: "a value that is not finite",
+    FailureKind.ERROR_NOT_FINITE: "an error that is not finite",
+    FailureKind.UNSTABLE_STEP: "the time step is above the stability limit",
+    FailureKind.EMPTY_CELL: "no particle in a cell that the body fills",
+    FailureKind.TIME_LIMIT: "the solver took longer than it may",
+    FailureKind.SOLVER_ERROR: "the solver ended with an error",
+    FailureKind.NOT_RUN: "not run yet",
+    FailureKind.NO_ERROR: "no error",
+}
+WIDTHS = {1.0: "a cell", 2.0: "two cells"}
+
+
+def kind(kind: FailureKind) -> str:
+    """A kind of failure: `det F ≤ 0`."""
+    return CAUSES[kind]
+
+
+def cause(failure: Failure) -> str:
+    """The kind with its numbers: `dt = 0.5 is above the stability limit 0.2`."""
+    n = failure.numbers
+    if failure.kind is FailureKind.UNSTABLE_STEP and n:
+        return f"dt = {n['dt']:.3g} is above the stability limit {n['limit']:.3g}"
+    if failure.kind is FailureKind.DOMAIN_TOO_WIDE and n:
+        limit = WIDTHS.get(n["limit"], f"{n['limit']:g} cells")
+        return f"the particle's domain is wider than {limit}"
+    if failure.kind is FailureKind.TIME_LIMIT and n:
+        return f"the solver took longer than {n['seconds']:g} s"
+    return kind(failure.kind)
+
+
+def failure(failure: Failure) -> str:
+    """The cause, then step, particle and cell: `det F ≤ 0 at step 21, particle 35 in cell (2, 2)`."""
+    when = f" at step {failure.step}" if failure.step >= 0 else ""
+    where = f", particle {failure.particle}" if failure.particle >= 0 else ""
+    where += f" in cell {failure.cell}" if failure.cell else ""
+    return f"{cause(failure)}{advice(failure)}{when}{where}"
+
+
+def advice(failure: Failure) -> str:
+    """What to type to have such a run of `verify mms` all the same; empty where nothing helps."""
+    return " (--force runs it all the same)" if failure.kind is FailureKind.UNSTABLE_STEP else ""
+
+
+def replicate(number: int) -> str:
+    """Which of the runs of a level; nothing for the one at the usual positions."""
+    return f", replicate {number + 1}" if number else ""
+
+
+def check(name: str, failure: Failure | None) -> str:
+    """The name of a check, with what ended the run that it has no number of."""
+    return f"{name}: {cause(failure)} at step {failure.step}" if failure else name

@@ -1,0 +1,197 @@
+"""Verdicts in words: what was expected, what decided, and the run that would decide."""
+
+from collections.abc import Callable
+
+from mpm_verify.cases.judging.records import Action, Ended, Expectation, Reason, ReasonCode, Wanted
+from mpm_verify.reports.components import words
+from mpm_verify.reports.sentences import failures
+
+
+def registered(e: Expectation | None) -> str:
+    """An order with its band, `2.00 (1.80 to 2.30)`; `diverges`, `stalls`, `all runs fail: det F ≤ 0`; or a dash."""
+    if e is None:
+        return words.DASH
+    if e.order is not None:
+        return f"{words.order(e.order)} ({words.order(e.order - e.below)} to {words.order(e.order + e.above)})"
+    return f"all runs fail: {failures.kind(e.failed)}" if e.failed else e.kind
+
+
+def expected(e: Expectation) -> str:
+    """What the run was to show: `order 2`, `a stall`, `no convergence`."""
+    if e.order is not None:
+        return f"order {e.order:g}"
+    return "a stall" if e.stall is not None else "no convergence"
+
+
+def reason(r: Reason, courants: tuple[float, ...] = ()) -> str:
+    """What decided, and after a colon the run that would decide where nothing does."""
+    asked = advice(r.wanted, courants) if r.wanted else ""
+    return f"{said(r)}: {asked}" if asked else said(r)
+
+
+def said(r: Reason) -> str:
+    """What decided."""
+    return SAID[r.code](r)
+
+
+def advice(wanted: Wanted, courants: tuple[float, ...] = ()) -> str:
+    """The option that asks for the run that would decide; `courants` are those of the study."""
+    option = options(wanted, courants)
+    if option:
+        return f"run with {' '.join(option)}"
+    if wanted.action is Action.FINISH:
+        return "that run has to finish"
+    if wanted.action is Action.HALVE_ALL:
+        return "run all levels with half the time step"
+    if wanted.action is Action.HALVE_FINEST:
+        return f"run h={words.size(wanted.h)} with half the time step"
+    return f"run h={words.size(wanted.h)}" + (
+        " in place of the finest" if wanted.action is Action.REPLACE_FINEST else ""
+    )
+
+
+def options(wanted: Wanted, courants: tuple[float, ...] = ()) -> tuple[str, ...]:
+    """The option of `verify mms` and its value; nothing where no option asks for that run.
+
+    `courants`: those of the study, the largest, with which its levels are run, first.
+    """
+    if wanted.action in (Action.ADD_LEVEL, Action.REPLACE_FINEST) and wanted.cells:
+        return "--cells", ",".join(map(str, wanted.cells))
+    if wanted.action is Action.HALVE_ALL and courants:
+        return "--courant", f"{courants[0] / 2:g}"
+    if wanted.action is Action.HALVE_FINEST and courants:
+        return "--courant", ",".join(f"{c:g}" for c in sorted({*courants, courants[0] / 2}, reverse=True))
+    return ()
+
+
+def ended(end: Ended) -> str:
+    """Why a level has no error."""
+    return failures.failure(end.failure) + failures.replicate(end.replicate)
+
+
+def _as_expected(r: Reason) -> str:
+    parts = [*([_order(r)] if "order" in r.numbers else []), f"contamination at most {_percent(r, 'most', 1)}"]
+    return "; ".join(parts + ([_magnitude(r)] if "ratio" in r.numbers else []))
+
+
+def _all_failed(r: Reason) -> str:
+    last = r.failed[-1]
+    return (
+        f"does not converge, as expected: all {len(r.failed)} runs ended, "
+        f"the last at h={words.size(last.h)} with {ended(last)}"
+    )
+
+
+def _diverges(r: Reason) -> str:
+    return f"does not converge, as expected: {', and '.join(_seen(r))}"
+
+
+def _stalls(r: Reason) -> str:
+    return f"stalls, as expected: {', and '.join(_seen(r))}"
+
+
+def _seen(r: Reason) -> list[str]:
+    """Growth, finer runs that failed, and a fall of the order."""
+    seen = [f"the error grew {_path(r)}"] if "error_0" in r.numbers else []
+    if r.failed:
+        more = f" and {len(r.failed) - 1} finer as well" if r.failed[1:] else ""
+        seen.append(f"the run at h={words.size(r.failed[0].h)} ended with {ended(r.failed[0])}{more}")
+    if "order_best" in r.numbers:
+        best, last = (words.order(_number(r, name)) for name in ("order_best", "order_last"))
+        seen.append(f"the order fell from {best} to {last} at h={_h(r, 'h_last')}")
+    return seen
+
+
+def _nothing_finished(r: Reason) -> str:
+    ends = "; ".join(f"h={words.size(end.h)}: {ended(end)}" for end in r.failed)
+    return f"no level finished ({ends or 'there is none'})"
+
+
+def _level_missing(r: Reason) -> str:
+    return f"there is no error at h={words.size(r.failed[0].h)} ({ended(r.failed[0])})"
+
+
+def _near_round_off(r: Reason) -> str:
+    error, floor = (words.short(_number(r, name)) for name in ("error", "floor"))
+    return f"an error of {error} is not clear of the round-off floor {floor}"
+
+
+def _not_settled(r: Reason) -> str:
+    orders = r.numbers["orders"]
+    assert isinstance(orders, tuple)
+    return f"the local orders {' '.join(words.order(p) for p in orders)} have not settled"
+
+
+def _order(r: Reason) -> str:
+    order, start, end, last, low, high = (
+        words.order(_number(r, name)) for name in ("order", "start", "end", "last", "band_low", "band_high")
+    )
+    interval = f"{100 * _number(r, 'confidence'):.3g} % interval {start} to {end}"
+    return f"order {order} ({interval}, last pair {last}) against {low} to {high}"
+
+
+def _parts(r: Reason) -> str:
+    lower, floor, most = _percent(r, "lower"), _percent(r, "floor"), _percent(r, "most", 1)
+    return f"lower order {lower}, floor {floor} of the finest error, at most {most}"
+
+
+def _magnitude(r: Reason) -> str:
+    return f"the error at h={_h(r, 'h')} is {words.order(_number(r, 'ratio'))} times the recorded one"
+
+
+def _neither(r: Reason) -> str:
+    stall = r.numbers.get("stall")
+    wanted = "neither growth nor convergence" if stall is None else f"neither a stall below {stall:g} nor convergence"
+    alone = r.numbers["h_0"] == r.numbers["h_1"]
+    went = f"one level finished, h={_h(r, 'h_0')}" if alone else f"the error went {_path(r)}"
+    return f"{wanted}: {went}"
+
+
+def _path(r: Reason) -> str:
+    ends = [f"{words.short(_number(r, f'error_{i}'))} at h={_h(r, f'h_{i}')}" for i in (0, 1)]
+    return f"from {ends[0]} to {ends[1]}"
+
+
+def _number(r: Reason, name: str) -> float:
+    value = r.numbers[name]
+    assert not isinstance(value, tuple)
+    return value
+
+
+def _h(r: Reason, name: str) -> str:
+    return words.size(_number(r, name))
+
+
+def _percent(r: Reason, name: str, digits: int = 0) -> str:
+    return words.percent(_number(r, name), digits)
+
+
+SAID: dict[ReasonCode, Callable[[Reason], str]] = {
+    ReasonCode.AS_EXPECTED: _as_expected,
+    ReasonCode.ALL_FAILED: _all_failed,
+    ReasonCode.DIVERGES: _diverges,
+    ReasonCode.STALLS: _stalls,
+    ReasonCode.ORDER_BELOW: lambda r: f"{_order(r)}: below the band",
+    ReasonCode.CONTAMINATED: lambda r: f"the expected order is the smaller part: {_parts(r)}",
+    ReasonCode.MAGNITUDE: _magnitude,
+    ReasonCode.CONVERGES: lambda r: (
+        f"a surprise: not expected to converge, the error fell {_path(r)}, order {words.order(_number(r, 'order'))}"
+    ),
+    ReasonCode.NOTHING_FINISHED: _nothing_finished,
+    ReasonCode.TOO_FEW_LEVELS: lambda r: (
+        f"with fewer than {_number(r, 'levels'):.0f} levels nothing shows that the order has settled"
+    ),
+    ReasonCode.LEVEL_MISSING: _level_missing,
+    ReasonCode.NEAR_ROUND_OFF: _near_round_off,
+    ReasonCode.TIME_STEP_UNKNOWN: lambda r: "nothing shows that the time step is small enough",
+    ReasonCode.TIME_STEP_COUPLED: lambda r: (
+        f"coupled: half the time step changes the finest error by {_percent(r, 'change')}"
+    ),
+    ReasonCode.ERROR_RISES: lambda r: f"the error does not fall on the way to h={_h(r, 'h')}",
+    ReasonCode.NOT_SETTLED: _not_settled,
+    ReasonCode.ORDER_ABOVE: lambda r: f"{_order(r)}: above the band, so the expectation is wrong or errors cancel",
+    ReasonCode.ORDER_UNDECIDED: lambda r: f"{_order(r)}: undecided",
+    ReasonCode.CONTAMINATION_OPEN: lambda r: f"contamination of {_percent(r, 'limit')} is not ruled out: {_parts(r)}",
+    ReasonCode.MAGNITUDE_CARRIED: lambda r: f"{_magnitude(r)}, carried over",
+    ReasonCode.NEITHER: _neither,
+}

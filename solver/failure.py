@@ -1,0 +1,52 @@
+"""Why a run cannot go on: a kind with numbers. The words for it are in reports/sentences/failures.py."""
+
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+
+class FailureKind(StrEnum):
+    """What ended a run, or why there is no error of it; `numbers` of the Failure in brackets."""
+
+    INVERTED = "inverted"  # det F is not above zero
+    DOMAIN_INVERTED = "domain_inverted"  # a domain with corners of its own is turned inside out
+    OUTSIDE_GRID = "outside_grid"  # a particle, or a part of its domain
+    DOMAIN_TOO_WIDE = "domain_too_wide"  # for the support nodes of its basis [width, limit, in cells]
+    NO_WIDTH = "no_width"  # of a domain
+    SLAB = "slab"  # a particle domain as wide as the grid
+    NOT_FINITE = "not_finite"  # x, v, F or sigma of a particle
+    ERROR_NOT_FINITE = "error_not_finite"  # an error norm
+    UNSTABLE_STEP = "unstable_step"  # a wave crosses more than a cell in a step [dt, limit]
+    EMPTY_CELL = "empty_cell"  # no particle in a cell that the body fills
+    TIME_LIMIT = "time_limit"  # a solver of somebody else took longer than it may [seconds]
+    SOLVER_ERROR = "solver_error"  # a solver of somebody else ended with an error
+    NOT_RUN = "not_run"  # nobody has run it yet
+    NO_ERROR = "no_error"  # it came to its end, and no error was measured
+
+
+@dataclass(frozen=True)
+class Failure:
+    """Why a run could not go on: a result, not a crash.
+
+    `step` is -1 where no step has to do with it, `particle` the index in the initial layout, -1 if none.
+    """
+
+    kind: FailureKind
+    step: int = 0
+    particle: int = -1
+    cell: tuple[int, int] | None = None
+    numbers: dict[str, float] = field(default_factory=dict, hash=False)
+
+
+class RunFailed(Exception):  # noqa: N818 - a failed run is a result, not an error
+    """The run cannot go on; `failure` says why."""
+
+    def __init__(
+        self,
+        kind: FailureKind,
+        step: int = 0,
+        particle: int = -1,
+        cell: tuple[int, int] | None = None,
+        numbers: dict[str, float] | None = None,
+    ) -> None:
+        super().__init__(f"{kind} at step {step}, particle {particle}, cell {cell}")
+        self.failure = Failure(kind, step, particle, cell, numbers or {})
