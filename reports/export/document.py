@@ -287,7 +287,7 @@ def schema(case: str) -> Row:
                 raise ValueError(f"the Run of {case} has the field {sorted(clash)[0]!r}, a name of {name}")
             definition["properties"] |= {key: nullable(field) for key, field in fields.items()}
     whole["properties"]["version"] = {"const": VERSION}
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": f"--json of {case}"} | whole
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema"} | whole | {"title": f"verify {case} --json"}
 
 
 def nullable(field: Row) -> Row:
