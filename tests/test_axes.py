@@ -21,7 +21,7 @@ from mpm_verify.cases.harness.study import NORMS, QUANTITIES, Failure, QuantityP
 from mpm_verify.cases.harness.verdicts import findings, refinement
 from mpm_verify.cases.judging.order import Expectation, Outcome
 from mpm_verify.cases.mms.sweep import MOST, Sweep, build, offsets
-from mpm_verify.reports.components import words
+from mpm_verify.reports import words
 from mpm_verify.reports.export.document import SCHEMA
 from mpm_verify.reports.figures.style import look
 from mpm_verify.reports.frames import Record

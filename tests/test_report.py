@@ -18,7 +18,8 @@ from mpm_verify.cases.harness.store import Store, StoreError
 from mpm_verify.cases.harness.study import Failure, QuantityPlan, Run
 from mpm_verify.cases.judging.order import Expectation
 from mpm_verify.mms.blind_spots import ALWAYS
-from mpm_verify.reports.components import audited, words
+from mpm_verify.reports import words
+from mpm_verify.reports.components import audited
 from mpm_verify.reports.components.cards import cards
 from mpm_verify.reports.figures.error_field import choose, domains
 from mpm_verify.reports.frames import read

@@ -9,6 +9,7 @@ from typing import Literal, get_args
 
 from mpm_verify.cases.harness.study import FORMAT, Failure, Status
 from mpm_verify.solver.layout import per_side
+from mpm_verify.solver.plugins import MATERIALS, load, split
 from mpm_verify.solver.sources import TOP, digest
 
 Start = Literal["none", "k0", "oedometric"]
@@ -99,8 +100,8 @@ class ColumnRun:
 
     @property
     def cost(self) -> float:
-        """Particle updates, roughly: what a run takes grows with it. UBCSAND is stiffer, and slower."""
-        stiff = 3.0 if self.law.startswith("ubcsand") else 1.0
+        """Particle updates, roughly: what a run takes grows with it. What stiffens with s is stiffer, and slower."""
+        stiff = 3.0 if load(MATERIALS, split(self.law)[0]).moduli else 1.0
         return 230.0 * stiff * self.aspect * self.ppc * self.cells**3 * self.duration / self.courant
 
     def __str__(self) -> str:
@@ -156,3 +157,6 @@ class ColumnStudy:
     finish: int = 0
     case: str = "column"
     format: int = FORMAT
+
+
+RECORDS = ColumnStudy, ColumnResult  # what the store keeps of this case

@@ -1,10 +1,13 @@
-"""What the store writes for each case: its Study and its Result. A new case with records of its own is a line here."""
+"""What the store writes for each case, its Study and its Result: RECORDS in the `run.py` of the case's folder."""
 
 from dataclasses import dataclass
 from functools import cache
+from importlib import import_module
 from typing import Any
 
 from pydantic import TypeAdapter
+
+from mpm_verify.solver.plugins import CASES, available
 
 
 @dataclass(frozen=True)
@@ -18,8 +21,7 @@ class Kind:
 @cache
 def kind(case: str) -> Kind:
     """The readers of a case, built once: it takes longer than to read a file. Raises KeyError for another."""
-    from mpm_verify.cases.column.run import ColumnResult, ColumnStudy
-    from mpm_verify.cases.harness.study import Result, Study
-
-    study, result = {"mms": (Study, Result), "column": (ColumnStudy, ColumnResult)}[case]
+    if case not in available(CASES):
+        raise KeyError(case)
+    study, result = import_module(f"{CASES}.{case}.run").RECORDS
     return Kind(TypeAdapter(study), TypeAdapter(result))

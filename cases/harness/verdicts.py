@@ -3,9 +3,10 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from mpm_verify.cases.harness.axes import crossed, error, level, local, middle, replicated
+from mpm_verify.cases.harness.axes import crossed, error, level, middle, replicated
 from mpm_verify.cases.harness.series import Head, Series, collect
 from mpm_verify.cases.harness.study import QuantityPlan, Result, Run, Study
+from mpm_verify.cases.judging.fit import local
 from mpm_verify.cases.judging.order import Expectation, Level, Outcome, Quantity, Verdict, judge, judge_family
 from mpm_verify.cases.judging.stall import BELOW, USUAL, Measured, Peer, Stall, explain
 

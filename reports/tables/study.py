@@ -9,9 +9,9 @@ import pandas as pd
 
 from mpm_verify.cases.harness.axes import crossed, particle_axes, position_axes, time_axes
 from mpm_verify.cases.harness.study import NORMS, QUANTITIES, QuantityPlan
-from mpm_verify.reports.components.cost import compares, costs
 from mpm_verify.reports.figures.local_orders import orders as pairs
 from mpm_verify.reports.frames import Record
+from mpm_verify.reports.tables.cost import compares, costs
 
 Rows = list[dict[str, Any]]
 KEY = ("method", "solution", "ppc", "quantity", "norm")
