@@ -1,5 +1,6 @@
 """Observers: they are called where they say, in their order, and change nothing; without them nothing is called."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -49,7 +50,7 @@ class Late(Observer):
 
 def went(*observers: Observer, stress: str = "usl") -> Model:
     model, _ = setup(RUN)
-    object.__setattr__(model.scheme, "stress", stress)
+    model.scheme = replace(model.scheme, stress=stress)
     model.watch(*observers)
     for _ in range(5):
         advance(model, gravity)
@@ -79,9 +80,7 @@ def test_each_hook_sees_its_part_of_the_step() -> None:
 def test_only_what_is_overridden_is_called() -> None:
     times: list[int] = []
     model = went(Late(times), Observer())
-    assert {hook: len(called) for hook, called in model.hooks.items()} == {
-        hook: int(hook == "after_step") for hook in HOOKS
-    }
+    assert [len(model.hooks[hook]) for hook in HOOKS] == [0, 0, 0, 1]
     assert times == [1, 2, 3, 4, 5]
 
 
