@@ -9,9 +9,9 @@ import pytest
 from mpm_verify.cases.element.curves import EnergyElement, columns, energy_stress, start
 from mpm_verify.cases.element.element import Element, ElementFailed, State, stretch
 from mpm_verify.cases.element.exact import exact
-from mpm_verify.cases.element.exam import study
 from mpm_verify.cases.element.path_file import from_file
 from mpm_verify.cases.element.paths import TESTS, follow, given, held, moves
+from mpm_verify.cases.element.study import study
 from mpm_verify.solver.material.hypoelastic import Hypoelastic
 from mpm_verify.solver.material.mohr_coulomb import MohrCoulomb
 from mpm_verify.solver.material.ubcsand import Ubcsand

@@ -10,8 +10,9 @@ import pytest
 
 from mpm_verify.cases.element.checks import law_checks, run
 from mpm_verify.cases.element.drawn import limit as limits
-from mpm_verify.cases.element.exam import beyond, examine, parameters, study, words
+from mpm_verify.cases.element.exam import beyond, examine, parameters, words
 from mpm_verify.cases.element.paths import TESTS
+from mpm_verify.cases.element.study import study
 from mpm_verify.cases.harness.checks import load
 from mpm_verify.cases.judging.records import Outcome
 from mpm_verify.reports.figures.element import stress

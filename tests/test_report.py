@@ -19,7 +19,8 @@ from mpm_verify.cases.judging.order import Expectation
 from mpm_verify.cases.mms import run as contract
 from mpm_verify.cases.mms.run import Run
 from mpm_verify.mms.blind_spots import ALWAYS
-from mpm_verify.reports.components import audited, words
+from mpm_verify.reports import words
+from mpm_verify.reports.components import audited
 from mpm_verify.reports.components.cards import cards
 from mpm_verify.reports.figures.error_field import choose, domains
 from mpm_verify.reports.frames import read

@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from mpm_verify.solver.rate_material import RateMaterial
 from mpm_verify.solver.state import Floats, Particles
 
 TOLERANCE, ENOUGH = 1e-13, 1e-12  # of the residuals' scales: where Newton ends, and what round-off may leave
@@ -49,7 +48,7 @@ class Element:
 
     def start(self, sigma: Floats) -> State:
         """The state under the stress sigma (4,); a law of F starts undeformed whatever it is."""
-        if isinstance(self.law, RateMaterial):
+        if self.law.respond is not None:
             return State(np.zeros(3), sigma.copy(), self.law.initial(sigma[None])[0])
         return State(np.zeros(3), np.zeros(4), np.zeros(0))
 
@@ -57,7 +56,7 @@ class Element:
         """The states after each of the strain increments (n,3), all from the same state."""
         count = len(increments)
         strains = state.strain + increments
-        if isinstance(self.law, RateMaterial):
+        if self.law.respond is not None:
             sigma, history = np.tile(state.sigma, count), np.tile(state.history, count)
             self.law.respond(self.constants, sigma, np.ascontiguousarray(increments).ravel(), history)
             rows, memories = sigma.reshape(count, 4), history.reshape(count, -1)

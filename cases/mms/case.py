@@ -14,6 +14,7 @@ import numpy as np
 
 from mpm_verify.cases.harness.environment import environment
 from mpm_verify.cases.harness.memory import forget_peak, peak_memory
+from mpm_verify.cases.harness.progress import Progress
 from mpm_verify.cases.harness.store import Arrays
 from mpm_verify.cases.harness.study import parameters
 from mpm_verify.cases.judging.records import Expectation
@@ -144,8 +145,9 @@ def setup(run: Run) -> tuple[Model, Comparison, int]:
     walls = moving(grid, solution.walls) if solution.boundary == "moving" else box(grid, solution.boundary)
     model = Model(grid, particles, basis, material, walls, dt, scheme)
     transfer.start(model, lambda X: velocity_gradient(exact, X, -behind, 1e-3 * dt))
-    packing = Packing(exact, layout, dx) if run.layout != "uniform" or len(layout) <= COUNTED else None
-    norms, gaps = Norms(len(particles), float(particles.V0.mean())), Gaps(layout)
+    every = max(1, steps // LOOKS)
+    packing = Packing(exact, layout, dx, every) if run.layout != "uniform" or len(layout) <= COUNTED else None
+    norms, gaps = Norms(len(particles), float(particles.V0.mean())), Gaps(layout, every)
     return model, Comparison(exact, norms, gaps, packing, new_shares(particles), behind), steps
 
 
@@ -185,20 +187,15 @@ def execute(run: Run, tick: Callable[[float], None] = lambda share: None) -> tup
     """Run to the end, or to where it cannot go on: a failed run is a Result. `tick` hears the share that is done."""
     forget_peak()
     model, comparison, steps = setup(run)
-    often = max(1, steps // LOOKS)
+    model.watch(comparison.gaps, *filter(None, [comparison.packing]), Progress(tick, steps))
     failure, started, used = None, time.perf_counter(), time.process_time()
     try:
         if not run.force:
             check_time_step(model)
         if comparison.packing:
             comparison.packing.begin(model, refuse=run.layout != "uniform")
-        for step in range(steps):
+        for _ in range(steps):
             advance(model, comparison)
-            if step % often == 0:
-                comparison.gaps.look(model)
-                if comparison.packing:
-                    comparison.packing.look(model)
-            tick((step + 1) / steps)
         comparison(model.particles, model.time)
     except RunFailed as ended:
         failure = ended.failure

@@ -4,7 +4,7 @@ from itertools import pairwise
 
 from mpm_verify.cases.harness.axes import particle_axes, position_axes, time_axes
 from mpm_verify.cases.judging.fit import Fit
-from mpm_verify.reports.components import words
+from mpm_verify.reports import words
 from mpm_verify.reports.components.show import Table
 from mpm_verify.reports.frames import Record
 

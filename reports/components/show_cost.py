@@ -1,7 +1,7 @@
 """A comparison of many methods for a paper: the table of their orders and errors, and the lines of the cost figure."""
 
 from mpm_verify.cases.harness.verdicts import Finding
-from mpm_verify.reports.components import words
+from mpm_verify.reports import words
 from mpm_verify.reports.components.show import Table
 from mpm_verify.reports.figures import style
 from mpm_verify.reports.figures.convergence import methods

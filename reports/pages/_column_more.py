@@ -10,8 +10,8 @@ from mpm_verify.reports.components.examined import Section
 from mpm_verify.reports.components.film import EACH, MOST, film
 from mpm_verify.reports.components.page import Add
 from mpm_verify.reports.components.show import Table
-from mpm_verify.reports.components.words import DASH, percent
 from mpm_verify.reports.figures import column as draw
+from mpm_verify.reports.words import DASH, percent
 
 FILMS = 8  # of a page
 AXES = {"cells": "cells of the width", "ppc": "particles per cell", "courant": "Courant number"}

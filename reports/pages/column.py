@@ -9,12 +9,12 @@ from mpm_verify.cases.harness.store import Store, StoreError
 from mpm_verify.reports.components.examined import Section, checks_table, render
 from mpm_verify.reports.components.page import Add
 from mpm_verify.reports.components.show import Table
-from mpm_verify.reports.components.words import DASH, percent
 from mpm_verify.reports.export.column_files import files, tables
 from mpm_verify.reports.figures import column as draw
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.pages._column_more import alive, films, refinement, set_up
 from mpm_verify.reports.sentences import failures
+from mpm_verify.reports.words import DASH, percent
 
 WORDS = {True: "reproduced", False: "not reproduced", None: "cannot be told"}
 

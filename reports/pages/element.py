@@ -9,8 +9,8 @@ from mpm_verify.cases.harness.checks import Curves, Examination
 from mpm_verify.reports.components.examined import Section, checks_table, render
 from mpm_verify.reports.components.page import Add, Image
 from mpm_verify.reports.components.show import Table
-from mpm_verify.reports.components.words import order, sci
 from mpm_verify.reports.figures import element as draw
+from mpm_verify.reports.words import order, sci
 
 
 def page(folder: Path, examination: Examination) -> Path:

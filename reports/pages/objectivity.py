@@ -7,8 +7,8 @@ from mpm_verify.cases.harness.checks import Curves, Examination
 from mpm_verify.reports.components.examined import Section, checks_table, render
 from mpm_verify.reports.components.page import Add
 from mpm_verify.reports.components.show import Table
-from mpm_verify.reports.components.words import sci
 from mpm_verify.reports.figures import objectivity as draw
+from mpm_verify.reports.words import sci
 
 KINEMATIC, RUN, ORDERS, SHEAR = (
     "Figure 2, kinematic",

@@ -87,7 +87,7 @@ def confining(law: Any, stress: float | None) -> float:
 
     if stress is None:
         return CONFINED
-    if hasattr(law, "energy"):
+    if law.energy is not None:
         raise ValueError("--stress: a law of F starts undeformed; give it to a law in rate form")
     if not (isfinite(stress) and stress > 0):
         raise ValueError(f"--stress {stress:g} must be above zero and finite: compression is positive")
