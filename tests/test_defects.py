@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mpm_verify.cases import mms
 from mpm_verify.cases.harness.study import Result, Run
 from mpm_verify.cases.judging.order import Expectation, Level, Outcome, Verdict, judge
+from mpm_verify.cases.mms import case as mms
 from mpm_verify.cases.mms.case import Comparison
 from mpm_verify.cases.mms.expectations import expected
 from mpm_verify.cases.mms.norms import compare, new_shares

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from mpm_verify.cases.column.exam import ColumnAnalysis
     from mpm_verify.cases.column.run import ColumnStudy
 
-VERSION = 1
+VERSION = 2
 
 
 @dataclass(frozen=True)
@@ -57,6 +57,8 @@ def conduct(study: "ColumnStudy", folder: Path, jobs: int | None, threads: int, 
 
 def document(collapse: "ColumnAnalysis", made: Path) -> str:
     """One JSON document: runs with their numbers, the paper's sentences, the checks; null for what is not finite."""
+    from mpm_verify.reports.sentences import column as words
+    from mpm_verify.reports.sentences.remarks import lead
     from mpm_verify.verify.examine import finite, told
 
     examination, results = collapse.examination, collapse.results
@@ -72,9 +74,13 @@ def document(collapse: "ColumnAnalysis", made: Path) -> str:
         "version": VERSION,
         "study": collapse.study.name,
         "outcome": str(examination.outcome),
-        "lead": examination.lead,
+        "lead": lead(examination),
+        "findings": [finite(asdict(finding)) for finding in examination.findings],
         "runs": runs,
-        "paper": [asdict(claim) for claim in collapse.claims],
+        "paper": [
+            {"says": words.says(claim), **finite(asdict(claim)), "found": words.found(claim)}
+            for claim in collapse.claims
+        ],
         "checks": [told(check) for check in examination.checks],
         "refinement": [finite(asdict(one)) for one in collapse.refined],
         "report": str(made),
@@ -87,7 +93,8 @@ def show(collapse: "ColumnAnalysis", made: Path) -> None:
     from rich.table import Table
     from rich.text import Text
 
-    from mpm_verify.reports.pages.column import WORDS, numbers
+    from mpm_verify.reports.pages.column import numbers
+    from mpm_verify.reports.sentences import column as words
     from mpm_verify.verify.examine import show as checks
     from mpm_verify.verify.terminal.table import Listened
 
@@ -98,7 +105,7 @@ def show(collapse: "ColumnAnalysis", made: Path) -> None:
     for name in ("run", "front 99 %", "99.9 %", "toe", "height", "rest", "falls", "area", ""):
         table.add_column(name, justify="left" if name in ("run", "") else "right")
     for run in collapse.study.runs:
-        table.add_row(collapse.label(run), *numbers(run, collapse.results.get(run.digest)))
+        table.add_row(words.label(collapse.study, run), *numbers(run, collapse.results.get(run.digest)))
     out.print()
     out.print(table)
     out.print(
@@ -107,7 +114,7 @@ def show(collapse: "ColumnAnalysis", made: Path) -> None:
     )
     styles = {True: "bold green", False: "bold yellow", None: "dim"}
     for claim in collapse.claims:
-        where = f" ({claim.runs})" if claim.runs else ""
-        out.print(Text.assemble("\n", (WORDS[claim.reproduced].upper(), styles[claim.reproduced]),
-                                f"  {claim.says}{where} {claim.found}"))  # fmt: skip
+        where = f" ({words.listed(claim.shared)})" if claim.shared else ""
+        told = f"  {words.says(claim)}{where} {words.found(claim)}"
+        out.print(Text.assemble("\n", (words.answer(claim).upper(), styles[claim.reproduced]), told))
     checks(collapse.examination, made)

@@ -60,12 +60,15 @@ def working() -> Iterator[None]:
 
 def document(examination: Examination, page: Path) -> str:
     """One JSON document: the checks with their outcomes; a number that is not finite is null."""
+    from mpm_verify.reports.sentences.remarks import lead, parameters
+
     content = {
         "version": VERSION,
         "examination": examination.name,
         "outcome": str(examination.outcome),
-        "lead": examination.lead,
-        "parameters": examination.parameters,
+        "lead": lead(examination),
+        "findings": [finite(asdict(finding)) for finding in examination.findings],
+        "parameters": parameters(examination),
         "checks": [told(check) for check in examination.checks],
         "report": str(page),
     }
@@ -91,6 +94,7 @@ def show(examination: Examination, page: Path) -> None:
     from rich.table import Table
     from rich.text import Text
 
+    from mpm_verify.reports.sentences.remarks import lead
     from mpm_verify.verify.terminal.table import STYLES, Listened
 
     out = Listened(highlight=False, soft_wrap=False)
@@ -112,7 +116,7 @@ def show(examination: Examination, page: Path) -> None:
     for check in examination.checks:
         if check.outcome != "PASS":
             out.print(Text.assemble((str(check.outcome), STYLES[check.outcome]), f" {check.group}: {sentence(check)}"))
-    out.print(Text(f"\n{examination.lead}"))
+    out.print(Text(f"\n{lead(examination)}"))
     out.print(f"\nreport: {page}", soft_wrap=True)
 
 
@@ -137,7 +141,7 @@ def closest(checks: list[Check]) -> str:
 
 
 def used(check: Check) -> float:
-    """Share of what the check is allowed that it uses, above 1 where it fails; NaN where there is no such number."""
+    """Fraction of what the check is allowed that it uses, above 1 where it fails; NaN where there is no such number."""
     if check.within:
         return check.miss / check.within
     over, under = (check.found, check.expected) if check.way == "at most" else (check.expected, check.found)

@@ -104,8 +104,9 @@ class ColumnRun:
         return 230.0 * stiff * self.aspect * self.ppc * self.cells**3 * self.duration / self.courant
 
     def __str__(self) -> str:
-        parts = [f"{self.method} {self.cells} cells wide, {self.ppc} per cell"]
-        parts += [f"damping {self.damping:g}"] * bool(self.damping) + [self.smoothing] * (self.smoothing != "none")
+        parts = [self.method, f"cells={self.cells}", f"ppc={self.ppc}"]
+        parts += [f"damping={self.damping:g}"] * bool(self.damping)
+        parts += [f"smoothing={self.smoothing}"] * (self.smoothing != "none")
         return ", ".join(parts)
 
     @property

@@ -12,7 +12,7 @@ from mpm_verify.mms.blind_spots import BlindSpot
 from mpm_verify.solver.plugins import identity
 from mpm_verify.solver.sources import TOP, digest
 
-FORMAT = 1  # of study.json and of every Result; a reader refuses another number
+FORMAT = 2  # of study.json and of every Result; a reader refuses another number
 QUANTITIES = ("u", "v", "F", "sigma")
 NORMS = ("rms", "max", "final", "printed")
 Status = Literal["finished", "failed"]

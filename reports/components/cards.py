@@ -81,7 +81,7 @@ def _card(record: Record, found: Finding) -> Card:
         plain,
         short(found),
         audited.short(record, d.solution),
-        tuple(spot.sentence for spot in audited.seen(record, d.solution)),
+        tuple(audited.seen(record, d.solution)),
     )
 
 

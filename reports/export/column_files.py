@@ -4,11 +4,11 @@ from pathlib import Path
 
 import pandas as pd
 
-from mpm_verify.cases.column.claims import told
 from mpm_verify.cases.column.exam import ColumnAnalysis
 from mpm_verify.cases.column.exam import curves as read_curves
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.reports.export.vtk import write_series
+from mpm_verify.reports.sentences import column as words
 
 
 def tables(collapse: ColumnAnalysis, store: Store, folder: Path) -> None:
@@ -23,9 +23,8 @@ def tables(collapse: ColumnAnalysis, store: Store, folder: Path) -> None:
                 {"digest": run.digest, **parameters, "status": result.status, "failure": failure, **result.values}
             )
             columns = {name: values for name, values in read_curves(store, result).items() if values.ndim == 1}
-            curves.append(
-                pd.DataFrame({"digest": run.digest, **{n: told(n, getattr(run, n)) for n in parameters}, **columns})
-            )
+            named = {axis: words.value(axis, value) for axis, value in parameters.items()}
+            curves.append(pd.DataFrame({"digest": run.digest, **named, **columns}))
     pd.DataFrame(rows).to_csv(folder / "runs.csv", index=False)
     if curves:
         pd.concat(curves).to_csv(folder / "curves.csv", index=False, float_format="%.7g")
