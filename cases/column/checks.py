@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from math import sqrt
 from typing import Any
 
-from mpm_verify.cases.column.claims import FinishedRun, shared
+from mpm_verify.cases.column.claims import FinishedRun, values
 from mpm_verify.cases.column.run import AT_REST, ColumnRun, ColumnStudy
 from mpm_verify.cases.harness.checks import Check, Way
 from mpm_verify.solver.plugins import METHODS, SMOOTHINGS, TRANSFERS, create, load, split
@@ -46,10 +46,10 @@ def checks(study: ColumnStudy, ran: Sequence[FinishedRun]) -> list[Check]:
     found = [Check("Runs", f"runs of {len(study.runs)} that came to rest", float(rested), float(study.finish),
                    "at least", "declared by the study")]  # fmt: skip
     way: Way = "at most"
-    for name, runs, values, bound, source in asked:
+    for name, runs, numbers, bound, source in asked:
         if runs:
-            place = max(range(len(runs)), key=lambda k: values[k])
-            found.append(Check("Invariants", name + named(study, runs[place].run), values[place], bound, way, source))
+            worst = max(range(len(runs)), key=lambda k: numbers[k])
+            found.append(Check("Invariants", name + named(study, runs[worst].run), numbers[worst], bound, way, source))
     return found
 
 
@@ -68,7 +68,9 @@ def plugin(package: str, specification: str) -> Any:
 
 def named(study: ColumnStudy, run: ColumnRun) -> str:
     """Which run it is, where there are several."""
-    return f" ({shared(run, study.axes)})" if len(study.runs) > 1 and study.axes else ""
+    if len(study.runs) < 2 or not study.axes:
+        return ""
+    return f" ({', '.join(f'{axis}={value}' for axis, value in values(run, study.axes).items())})"
 
 
 def lost(one: FinishedRun) -> float:

@@ -115,8 +115,9 @@ class ColumnRun(RunRecord):
         return round((self.channel * self.cells + 1) * ((self.aspect + 1) * self.cells + 1))
 
     def __str__(self) -> str:
-        parts = [f"{self.method} {self.cells} cells wide, {self.ppc} per cell"]
-        parts += [f"damping {self.damping:g}"] * bool(self.damping) + [self.smoothing] * (self.smoothing != "none")
+        parts = [self.method, f"cells={self.cells}", f"ppc={self.ppc}"]
+        parts += [f"damping={self.damping:g}"] * bool(self.damping)
+        parts += [f"smoothing={self.smoothing}"] * (self.smoothing != "none")
         return ", ".join(parts)
 
     @property

@@ -1,6 +1,8 @@
-"""`verify material`: element tests of one law as an Examination, with errors and orders in the strain step."""
+"""`verify material`: element tests of one material as an Examination, with errors and orders in the strain step."""
 
+from collections.abc import Callable
 from dataclasses import asdict
+from enum import StrEnum
 from typing import Any
 
 import numpy as np
@@ -8,23 +10,44 @@ import numpy as np
 from mpm_verify.cases.element.checks import law_checks
 from mpm_verify.cases.element.drawn import drawn
 from mpm_verify.cases.element.paths import ElementTest
-from mpm_verify.cases.element.study import ROUND_OFF, ElementStudy, study
-from mpm_verify.cases.harness.checks import Check, Examination
+from mpm_verify.cases.element.study import FINE, ROUND_OFF, ElementStudy, study
+from mpm_verify.cases.harness.checks import Check, Examination, Remark
 from mpm_verify.cases.harness.environment import environment
 from mpm_verify.solver._jit import use_threads
 from mpm_verify.solver.material.ubcsand import Ubcsand, out_of_range
 
-FIRST = (
-    "First order is expected of this law: it returns along the stress at the end of a step, and costs an order where "
-    "the direction of the stress turns."
-)
+
+class ElementRemark(StrEnum):
+    """What came out, what one should know of each test, and what parameters do."""
+
+    TESTS = "element.tests"
+    UNJUDGED = "element.unjudged"  # nothing is known of the path
+    EXACT = "element.exact"  # tests without an error in any number of steps
+    ORDERS = "element.orders"
+    FIRST_ORDER = "element.first_order"  # is expected of a return along the stress at the end of a step
+    FAILED = "element.failed"
+    AGAINST = "element.against"  # what errors are against: a source
+    AGAINST_OWN = "element.against_own"  # the test's own curve with more steps
+    ROUND_OFF = "element.round_off"
+    NO_ORDER = "element.no_order"
+    ORDER = "element.order"
+    ZZ_WITHIN = "element.zz_within"  # the range of the principal stresses in the plane, in all steps
+    ZZ_OUTSIDE = "element.zz_outside"
+    UNDEFORMED = "element.undeformed"
+    OR_MORE = "element.or_more"
+    NO_EFFECT = "element.no_effect"
+    NO_EFFECT_PRIMARY = "element.no_effect_primary"  # in primary loading
+    AFTER_REVERSAL = "element.after_reversal"
+    CORRELATION = "element.correlation"
+    OUR_READING = "element.our_reading"
 
 
 def checks(law: Any, studied: ElementStudy) -> list[Check]:
     """Each test ends, is as close to the exact curve as its order says, and of the order that the law has."""
     group, found = studied.test.title, []
     if studied.failed:
-        return [Check(group, f"ends early: {studied.failed}", float("nan"), 0.0, "absolute", "every step is solved")]
+        at = f"step {studied.failed.step} of {studied.failed.steps}"
+        return [Check(group, f"end at {at}", float("nan"), 0.0, "absolute", "every step is solved")]
     finest = studied.errors[-1]
     if studied.truth is not None:
         second = 1e-6 * (1600 / studied.steps[-1]) ** 2  # what order 2 makes of 1e-6 in 1600 steps
@@ -44,75 +67,86 @@ def examine(
     found = [check for one in studies for check in checks(law, one)]
     found += law_checks(law)
     return Examination(
-        f"material-{specification}", f"Element tests of {specification}", command, lead(law, studies, found),
-        tuple(found), parameters(law, stress, steps), {one.test.title: words(law, one) for one in studies},
-        environment(), drawn(law, studies, stress),
+        f"material-{specification}", f"Element tests of {specification}", command,
+        tuple(lead(law, studies, found) + [remark for one in studies for remark in notes(law, one)]),
+        tuple(found), parameters(law, stress, steps), origins(law), environment(), drawn(law, studies, stress),
     )  # fmt: skip
 
 
-def lead(law: Any, studies: list[ElementStudy], found: list[Check]) -> str:
-    """What came out, in words: how many checks, which orders, what is exact."""
+def lead(law: Any, studies: list[ElementStudy], found: list[Check]) -> list[Remark]:
+    """What came out: how many checks, which orders, what is exact."""
     missed = sum(check.outcome != "PASS" for check in found)
-    told = [f"{len(studies)} element tests, {len(found)} checks: {f'{missed} did not pass' if missed else 'all pass'}."]
+    counts = {"tests": len(studies), "checks": len(found), "missed": missed}
+    told = [Remark(ElementRemark.TESTS if found else ElementRemark.UNJUDGED, counts)]
     flat = sum(max(one.errors) <= ROUND_OFF for one in studies)
     orders = [one.order for one in studies if one.order == one.order]
     if flat:
-        told.append(f"{flat} {'is' if flat == 1 else 'are'} exact in any number of steps.")
+        told.append(Remark(ElementRemark.EXACT, {"tests": flat}))
     if orders:
-        told.append(f"Errors in the strain step fall with orders from {min(orders):.2f} to {max(orders):.2f}.")
+        told.append(Remark(ElementRemark.ORDERS, {"least": min(orders), "most": max(orders)}))
         if law.order == 1:
-            told.append(FIRST)
-    if not found:
-        told = [f"{len(studies)} element tests. Nothing is known of this path, so nothing is judged.", *told[1:]]
-    return " ".join(told)
+            told.append(Remark(ElementRemark.FIRST_ORDER))
+    return told
 
 
-def words(law: Any, one: ElementStudy) -> tuple[str, ...]:
+def notes(law: Any, one: ElementStudy) -> list[Remark]:
     """What the errors are held against, what came out, and how much of the path is the plane's alone to judge."""
-    end = f"It ends early: {one.failed}." if one.failed else ""
-    if max(one.errors) <= ROUND_OFF:
-        order = "The error is round-off at any number of steps: each step is exact here, and there is no order."
-    elif np.isnan(one.order):
-        order = "There is no order to see."
+    group, stopped = one.test.title, one.failed
+    found = []
+    if stopped:
+        where = {"left": stopped.left, "step": stopped.step, "steps": stopped.steps}
+        found.append(Remark(ElementRemark.FAILED, {"cause": stopped.cause, **where}, group))
+    if one.source:
+        found.append(Remark(ElementRemark.AGAINST, {"source": one.source}, group))
     else:
-        order = f"The order is {one.order:.2f}."
-    return tuple(filter(None, [end, f"Errors are against: {one.source}. {order}", beyond(law, one)]))
+        found.append(Remark(ElementRemark.AGAINST_OWN, {"times": FINE}, group))
+    if max(one.errors) <= ROUND_OFF:
+        found.append(Remark(ElementRemark.ROUND_OFF, {"largest": max(one.errors)}, group))
+    elif np.isnan(one.order):
+        found.append(Remark(ElementRemark.NO_ORDER, {}, group))
+    else:
+        found.append(Remark(ElementRemark.ORDER, {"order": one.order}, group))
+    outside = beyond(law, one)
+    if outside is not None:
+        code = ElementRemark.ZZ_OUTSIDE if outside else ElementRemark.ZZ_WITHIN
+        found.append(Remark(code, {"fraction": outside}, group))
+    return found
 
 
-def beyond(law: Any, one: ElementStudy) -> str:
-    """In which share of the finest run's steps zz leaves the plane's range, of a law that yields in the plane alone."""
+def beyond(law: Any, one: ElementStudy) -> float | None:
+    """Fraction of the finest run's steps in which zz leaves the plane's range; None of a material that sees zz."""
     if law.name not in PLANE_ALONE or len(one.curve["s"]) < 2:
-        return ""
+        return None
     sigma = np.column_stack([-one.curve["sx"], -one.curve["sy"], -one.curve["sz"], one.curve["tau"]])
-    share = 100 * float(np.mean(PLANE_ALONE[law.name](sigma[1:])))
-    if share == 0:
-        return "zz is within the range of the principal stresses in the plane in all steps."
-    return (
-        f"zz is outside the range of the principal stresses in the plane in {share:.3g} % of the steps: there the "
-        "largest shear is on other planes, which this law does not look at."
-    )
+    return float(np.mean(PLANE_ALONE[law.name](sigma[1:])))
 
 
-def parameters(law: Any, stress: float, steps: int) -> dict[str, str]:
-    """Of the law, with what one should know of them, and of the tests."""
-    own = {key: value if isinstance(value, str) else f"{value:.10g}" for key, value in asdict(law).items()}
-    told = REMARKS[law.name](law) if law.name in REMARKS else {}
-    own |= {key: f"{own[key]} ({remark})" for key, remark in told.items()}
-    confined = "the law starts undeformed" if law.energy is not None else f"{stress:g}"
-    return own | {"confining stress": confined, "steps of the coarsest run": f"{steps} or a few more"}
+def parameters(law: Any, stress: float, steps: int) -> dict[str, float | str]:
+    """Parameters of the material and of the tests."""
+    own: dict[str, float | str] = dict(asdict(law))
+    return own | {"confining stress": 0.0 if law.energy is not None else stress, "steps of the coarsest run": steps}
 
 
-def remarks(law: Ubcsand) -> dict[str, str]:
-    """What a value does not say: where it comes from, and whether it has an effect."""
-    factors = {f"hfac{n}": "no effect" if law.reversal else "no effect in primary loading" for n in range(1, 7)}
+def origins(law: Any) -> dict[str, str]:
+    """Codes for where a value comes from, and whether it has an effect."""
+    found: dict[str, str] = {"steps of the coarsest run": ElementRemark.OR_MORE}
+    if law.energy is not None:
+        found["confining stress"] = ElementRemark.UNDEFORMED
+    if law.name in ORIGINS:
+        found |= ORIGINS[law.name](law)
+    return found
+
+
+def of_ubcsand(law: Ubcsand) -> dict[str, str]:
+    """Codes for the parameters of UBCSAND."""
+    idle = ElementRemark.NO_EFFECT if law.reversal else ElementRemark.NO_EFFECT_PRIMARY
+    found: dict[str, str] = {f"hfac{n}": idle for n in range(1, 7)}
+    found |= {"Rf": ElementRemark.CORRELATION, "reversal": ElementRemark.OUR_READING}
     if law.reversal:
-        factors |= dict.fromkeys(("hfac1", "hfac2"), "in the stiffness after a reversal")
-    return factors | {
-        "Rf": "not in the paper's Table 2; the default is the correlation 1.1 N^-0.15 at N = 10.7",
-        "reversal": "1 is our reading of the cyclic law, whose rules are not public; 0 is primary loading alone",
-    }
+        found |= dict.fromkeys(("hfac1", "hfac2"), str(ElementRemark.AFTER_REVERSAL))
+    return found
 
 
-# By the name of the material: what its parameters' values do not say, and the stresses that it does not judge.
-REMARKS = {"ubcsand": remarks}
-PLANE_ALONE = {"ubcsand": out_of_range}
+# By the name of the material: where its parameters' values come from, and the stresses that it does not judge.
+ORIGINS: dict[str, Callable[[Any], dict[str, str]]] = {"ubcsand": of_ubcsand}
+PLANE_ALONE: dict[str, Callable[..., Any]] = {"ubcsand": out_of_range}

@@ -12,7 +12,7 @@ from typing import Literal
 
 import numpy as np
 
-from mpm_verify.cases.element.element import Element, ElementFailed, State
+from mpm_verify.cases.element.element import Element, ElementFailed, ElementFailure, State
 from mpm_verify.solver.state import Floats
 
 CYCLES = 3
@@ -107,18 +107,28 @@ TESTS = {
 
 
 @dataclass(frozen=True)
+class Stopped:
+    """Why a test ends early, what was left of the residual, and at which of how many steps."""
+
+    cause: ElementFailure
+    left: float
+    step: int
+    steps: int
+
+
+@dataclass(frozen=True)
 class Followed:
-    """Strain (N+1,3), sigma (N+1,4), history (N+1,H); `failed`: why it ends before the last step, or nothing."""
+    """Strain (N+1,3), sigma (N+1,4), history (N+1,H); `failed` where it ends before the last step."""
 
     strain: Floats
     sigma: Floats
     history: Floats
-    failed: str = ""
+    failed: Stopped | None = None
 
 
 def follow(element: Element, test: ElementTest, steps: int, start: Floats) -> Followed:
     """The test in equal steps from the stress `start` (4,); what cannot go on ends there and says why."""
-    states, failed = [element.start(start)], ""
+    states, failed = [element.start(start)], None
     size, before = scale_of(element, states[0]), np.zeros(3)
     free = any(condition.of == "stress" for condition in test.conditions)
     for number, move in enumerate(moves(test, steps), 1):
@@ -131,7 +141,7 @@ def follow(element: Element, test: ElementTest, steps: int, start: Floats) -> Fo
                 end = finite(element.step(last, move[None])[0])
             states.append(end)
         except ElementFailed as error:
-            failed = f"{error}, at step {number} of {steps}"
+            failed = Stopped(error.cause, error.left, number, steps)
             break
     strain, sigma, history = (np.array([getattr(s, name) for s in states]) for name in ("strain", "sigma", "history"))
     return Followed(strain, sigma, history, failed)
@@ -183,7 +193,7 @@ def scales(test: ElementTest, move: Floats, size: float) -> Floats:
 
 
 def finite(state: State) -> State:
-    """The state; ElementFailed where its stress is lost."""
+    """The state; ElementFailed where its stress is not finite."""
     if not np.isfinite(state.sigma).all():
-        raise ElementFailed("a stress that is not finite")
+        raise ElementFailed(ElementFailure.NOT_FINITE)
     return state

@@ -9,7 +9,7 @@ import numpy as np
 from mpm_verify.cases.element.curves import columns, start
 from mpm_verify.cases.element.element import Element
 from mpm_verify.cases.element.exact import Columns, exact
-from mpm_verify.cases.element.paths import ElementTest, Followed, follow
+from mpm_verify.cases.element.paths import ElementTest, Followed, Stopped, follow
 
 DOUBLED, FINE = (1, 2, 4, 8, 16), 64  # steps of the study, and of what stands for the truth where nothing is known
 ROUND_OFF = 1e-9  # relative errors below it have no order
@@ -17,11 +17,11 @@ ROUND_OFF = 1e-9  # relative errors below it have no order
 
 @dataclass(frozen=True)
 class ElementStudy:
-    """One test: its curve, the exact one or the finest, the errors at each number of steps, and the last order."""
+    """One test: its curve, the exact one and its source, the errors at each number of steps, and the last order."""
 
     test: ElementTest
     curve: Columns
-    failed: str
+    failed: Stopped | None
     truth: Columns | None
     source: str
     steps: tuple[int, ...]
@@ -43,7 +43,7 @@ def study(law: Any, test: ElementTest, stress: float, steps: int) -> ElementStud
     counts = tuple(n * test.steps(steps) for n in DOUBLED)
     runs = [follow(element, test, n, begin) for n in counts]
     known = exact(law, test, stress)
-    truth, source = known or (None, f"its own curve with {FINE} times the steps")
+    truth, source = known or (None, "")
     if truth is None and not any(run.failed for run in runs):
         finest = follow(element, test, FINE * counts[0], begin)
         truth_end = None if finest.failed else columns(test, finest)
@@ -53,9 +53,9 @@ def study(law: Any, test: ElementTest, stress: float, steps: int) -> ElementStud
     return ElementStudy(test, columns(test, runs[-1]), first_failure(runs), truth, source, counts, errors)
 
 
-def first_failure(runs: list[Followed]) -> str:
-    """Why a run ended early, of the finest that did."""
-    return next((run.failed for run in reversed(runs) if run.failed), "")
+def first_failure(runs: list[Followed]) -> Stopped | None:
+    """Why the finest run of those that ended early did."""
+    return next((run.failed for run in reversed(runs) if run.failed), None)
 
 
 def distance(test: ElementTest, run: Followed, truth: Columns | None) -> float:

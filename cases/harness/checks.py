@@ -6,6 +6,7 @@ DIR/curves.npz         each column of each curve as `curve/column`
 
 import io
 import json
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
 from math import isfinite
 from pathlib import Path
@@ -20,7 +21,7 @@ from mpm_verify.cases.judging.records import Outcome
 from mpm_verify.solver.failure import Failure
 from mpm_verify.solver.state import Floats
 
-FORMAT = 1
+FORMAT = 2
 Way = Literal["relative", "absolute", "at least", "at most"]
 Curves = dict[str, dict[str, Floats]]
 BROKEN = (
@@ -71,16 +72,31 @@ class Check:
 
 
 @dataclass(frozen=True)
+class Remark:
+    """A finding without words: its code, `case.what`, its numbers and names, and the group of checks that it is of.
+
+    Without a group it is of the whole. reports/sentences makes the words.
+    """
+
+    code: str
+    numbers: Mapping[str, float | str] = field(default_factory=dict)
+    group: str = ""
+
+
+@dataclass(frozen=True)
 class Examination:
-    """What one command examined: `lead` says in words what came out, `notes` (by group) what one should know of it."""
+    """What one command examined: checks, and as `findings` what came out and what one should know of each group.
+
+    `origins`: by parameter, a code for where its value comes from or what it does, `case.what` too.
+    """
 
     name: str
     title: str
     command: str
-    lead: str
+    findings: tuple[Remark, ...]
     checks: tuple[Check, ...]
-    parameters: dict[str, str] = field(default_factory=dict)
-    notes: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    parameters: dict[str, float | str] = field(default_factory=dict)
+    origins: dict[str, str] = field(default_factory=dict)
     environment: dict[str, str] = field(default_factory=dict)
     curves: dict[str, Any] = field(default_factory=dict, compare=False)  # Curves; pydantic knows no arrays
     format: int = FORMAT
@@ -95,7 +111,8 @@ class Examination:
     @property
     def groups(self) -> tuple[str, ...]:
         """Names of the parts, in their order."""
-        return tuple(dict.fromkeys([*(check.group for check in self.checks), *self.notes]))
+        noted = [finding.group for finding in self.findings if finding.group]
+        return tuple(dict.fromkeys([*(check.group for check in self.checks), *noted]))
 
 
 ADAPTER: TypeAdapter[Examination] = TypeAdapter(Examination)

@@ -179,7 +179,7 @@ def manufactured(solution: str, material: str) -> Manufactured:
 
 @cache
 def audited(solution: str, material: str) -> tuple[BlindSpot, ...]:
-    """The auditor's lines on two specifications, once in a process."""
+    """The auditor's findings on two specifications, once in a process."""
     return audit(manufactured(solution, material), create(SOLUTIONS, solution), create(MATERIALS, material)).spots
 
 

@@ -14,7 +14,7 @@ SMALL_AMPLITUDE = "small amplitude"  # a regime of its own: no particle crosses 
 class Deviation:
     """Orders of `u` (None: as promised), `v`, `F` and `sigma`, or one of the two others.
 
-    `stalls`: cells on which the fallen order of u shows at the latest; `fails`: the kind of failure that ends every run.
+    `stalls`: cells on which the fallen order of u shows at the latest; `fails`: what ends every run.
     """
 
     u: float | None = None

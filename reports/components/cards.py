@@ -83,7 +83,7 @@ def _card(record: Record, found: Finding) -> Card:
         plain,
         short(found),
         audited.short(record, d.run.solution),
-        tuple(spot.sentence for spot in audited.seen(record, d.run.solution)),
+        tuple(audited.seen(record, d.run.solution)),
     )
 
 

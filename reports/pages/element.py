@@ -1,4 +1,4 @@
-"""The page of `verify material`: each element test with its curves, then the errors, then the law's own checks."""
+"""The page of `verify material`: each element test with its curves, then the errors, then the material's own checks."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -10,6 +10,7 @@ from mpm_verify.reports.components.examined import Section, checks_table, render
 from mpm_verify.reports.components.page import Add, Image
 from mpm_verify.reports.components.show import Table
 from mpm_verify.reports.figures import element as draw
+from mpm_verify.reports.sentences.remarks import notes
 from mpm_verify.reports.words import order, sci
 
 
@@ -19,16 +20,17 @@ def page(folder: Path, examination: Examination) -> Path:
 
 
 def sections(examination: Examination, add: Add) -> Sequence[Section]:
-    """A section a test, one for the errors, one for what is known of the law."""
+    """A section a test, one for the errors, one for what is known of the material."""
     names = [name.partition("/")[2] for name in examination.curves if name.startswith("test/")]
-    titles = dict(zip(names, examination.notes, strict=True))
+    noted = dict.fromkeys(finding.group for finding in examination.findings if finding.group)
+    titles = dict(zip(names, noted, strict=True))
     tests = [test(examination, name, titles[name], add) for name in names]
     rest = [group for group in examination.groups if group not in titles.values()]
     known = [checks_table(group, [c for c in examination.checks if c.group == group]) for group in rest]
     own = [
         Section(
             "law",
-            "What is known of the law",
+            "What is known of the material",
             ["Tables, limits and invariants, in runs of 100 steps unless said."],
             (),
             known,
@@ -62,7 +64,7 @@ def test(examination: Examination, name: str, title: str, add: Add) -> Section:
         images.append((add(f"{name}_volume", volume, f"{title}: volume strain."), "Volume strain."))
     checks = [check for check in examination.checks if check.group == title]
     tables = [checks_table("Checks", checks)] if checks else []
-    return Section(name, title, examination.notes[title], images, tables)
+    return Section(name, title, notes(examination, title), images, tables)
 
 
 def steps(examination: Examination, titles: dict[str, str], add: Add) -> Section:
