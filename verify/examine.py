@@ -65,6 +65,7 @@ def document(examination: Examination, page: Path) -> str:
         "examination": examination.name,
         "outcome": str(examination.outcome),
         "lead": examination.lead,
+        "notes": list(examination.remarks),
         "parameters": examination.parameters,
         "checks": [told(check) for check in examination.checks],
         "report": str(page),
@@ -113,6 +114,8 @@ def show(examination: Examination, page: Path) -> None:
         if check.outcome != "PASS":
             out.print(Text.assemble((str(check.outcome), STYLES[check.outcome]), f" {check.group}: {sentence(check)}"))
     out.print(Text(f"\n{examination.lead}"))
+    for remark in examination.remarks:
+        out.print(Text(f"note: {remark}"))
     out.print(f"\nreport: {page}", soft_wrap=True)
 
 

@@ -18,6 +18,7 @@ from mpm_verify.solver._jit import use_threads
 from mpm_verify.solver.material.drucker_prager import DruckerPrager
 from mpm_verify.solver.material.mohr_coulomb import MohrCoulomb
 from mpm_verify.solver.material.ubcsand import Ubcsand, out_of_range
+from mpm_verify.solver.plugins import split
 
 DOUBLED, FINE = (1, 2, 4, 8, 16), 64  # steps of the study, and of what stands for the truth where nothing is known
 ROUND_OFF = 1e-9  # relative errors below it have no order
@@ -107,8 +108,33 @@ def examine(
     return Examination(
         f"material-{specification}", f"Element tests of {specification}", command, lead(law, studies, found),
         tuple(found), parameters(law, stress, steps), {one.test.title: words(law, one) for one in studies},
-        environment(), drawn(law, studies, stress),
+        environment(), drawn(law, studies, stress), remarks=(*rate_given(specification), *read(tests)),
     )  # fmt: skip
+
+
+def rate_given(specification: str) -> tuple[str, ...]:
+    """A line on an objective rate that is asked for, which no path of strains can tell from another."""
+    given = next((item for item in split(specification)[1].split(",") if item.startswith("rate=")), "")
+    if not given:
+        return ()
+    return (
+        f"{given} changes nothing here: along a path of strains the law works in its own frame, and nothing turns; "
+        "verify objectivity tells the rates apart.",
+    )
+
+
+def read(tests: list[ElementTest]) -> tuple[str, ...]:
+    """Lines on what was read of a path's file, and what was not."""
+    lines = []
+    for source in (test.source for test in tests if test.source):
+        used, zero, unused = (", ".join(names) for names in (source.used, source.zero, source.unused))
+        largest = f"{source.largest:.3g} ({100 * source.largest:.3g} %)"
+        lines.append(f"{used} are read of {source.name}; the largest strain is {largest}.")
+        if zero:
+            lines.append(f"{zero}: zero in every row, as in plane strain, which is what is computed.")
+        if unused:
+            lines.append(f"not used of {source.name}: {unused}.")
+    return tuple(lines)
 
 
 def lead(law: Any, studies: list[ElementStudy], found: list[Check]) -> str:

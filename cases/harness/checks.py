@@ -70,7 +70,10 @@ class Check:
 
 @dataclass(frozen=True)
 class Examination:
-    """What one command examined: `lead` says in words what came out, `notes` (by group) what one should know of it."""
+    """What one command examined: `lead` says in words what came out, `notes` (by group) what one should know of it.
+
+    `remarks` are lines on what was given: what was read of it, and what of it has no effect.
+    """
 
     name: str
     title: str
@@ -81,6 +84,7 @@ class Examination:
     notes: dict[str, tuple[str, ...]] = field(default_factory=dict)
     environment: dict[str, str] = field(default_factory=dict)
     curves: dict[str, Any] = field(default_factory=dict, compare=False)  # Curves; pydantic knows no arrays
+    remarks: tuple[str, ...] = ()
     format: int = FORMAT
 
     @property
