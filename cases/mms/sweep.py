@@ -23,6 +23,8 @@ from mpm_verify.solver.plugins import (
     available,
     create,
     is_file,
+    parameters_of,
+    shown,
     split,
 )
 from mpm_verify.solver.stress_update import check_stress_update
@@ -129,7 +131,7 @@ def build(sweep: Sweep, command: str, name: str) -> Study:
     named = (
         " and ".join(m.upper() for m in sweep.methods) if len(sweep.methods) < 4 else f"{len(sweep.methods)} methods"
     )
-    title = f"{named} against the manufactured solution {solution}"
+    title = f"{named} against the manufactured solution {shown(solution)}"
     return Study(name, title, command, every, declared)
 
 
@@ -169,7 +171,7 @@ def belongs(declared: QuantityPlan, run: Run) -> bool:
 def canonical(package: str, specification: str) -> str:
     """The specification with only the parameters that differ from their defaults, sorted: one name for one thing."""
     plugin: Any = create(package, specification)
-    values = {item.name: (getattr(plugin, item.name), item.default) for item in fields(plugin)}
+    values = {name: (getattr(plugin, item.name), item.default) for name, item in parameters_of(plugin).items()}
     changed = [
         f"{key}={str(value).removesuffix('.0')}" for key, (value, usual) in sorted(values.items()) if value != usual
     ]
