@@ -31,12 +31,10 @@ def fitting(solution: Any, usual: tuple[int, ...]) -> tuple[int, ...]:
     first = range(least, FINER * usual[0] + 1, sides.denominator)
     scales = [count / usual[0] for count in first if count >= COARSER * usual[0]]
     scaled = [tuple(nearest(scale * count, sides.denominator) for count in usual) for scale in scales]
-    kept = [
-        cells for cells in scaled if all(a < b for a, b in pairwise(cells)) and cells[-1] <= FINER * usual[-1]
-    ]
+    kept = [cells for cells in scaled if all(a < b for a, b in pairwise(cells)) and cells[-1] <= FINER * usual[-1]]
     if not kept:
         return tuple(least + sides.denominator * number for number in range(len(usual)))
-    return min(kept, key=lambda cells: (uneven(cells, usual) + abs(log(cells[-1] / usual[-1])) / 2, cells))
+    return min(kept, key=lambda cells: (uneven(cells, usual) + abs(log(cells[-1] / usual[-1])) / 4, cells))
 
 
 def fits(count: int, sides: Fraction) -> bool:
@@ -61,13 +59,13 @@ def check_cells(name: str, solution: Any, cells: tuple[int, ...]) -> None:
     width, height = (float(side) for side in solution.upper - solution.lower)
     if sides is None:
         raise ValueError(
-            f"{name}: no square cells fill a rectangle of {width:g} x {height:g}; the ratio of the sides must be one of "
-            f"whole numbers up to {MOST}, as in 1 x 0.7"
+            f"{name}: no square cells fill a rectangle of {width:g} x {height:g}; the ratio of the sides must be "
+            f"one of whole numbers up to {MOST}, as in 1 x 0.7"
         )
     wrong = [count for count in cells if not fits(count, sides)]
     if wrong:
         typed = ",".join(map(str, fitting(solution, cells)))
         raise ValueError(
-            f"{name}: {wrong[0]} cells over the width of {width:g} do not fill the height of {height:g}; take multiples "
-            f"of {sides.denominator}: --cells {typed}"
+            f"{name}: {wrong[0]} cells over the width of {width:g} do not fill the height of {height:g}; take "
+            f"multiples of {sides.denominator}: --cells {typed}"
         )

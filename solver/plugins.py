@@ -85,7 +85,7 @@ def absolute(specification: str) -> str:
     return ":".join(filter(None, [str(Path(name).resolve()), rest])) if is_file(name) else specification
 
 
-def shown(specification: str) -> str:
+def on_screen(specification: str) -> str:
     """Name on screen: of a user's file its stem, with the parameters."""
     name, rest = split(specification)
     return ":".join(filter(None, [Path(name).stem, rest])) if is_file(name) else specification
