@@ -99,6 +99,7 @@ class Examination:
     origins: dict[str, str] = field(default_factory=dict)
     environment: dict[str, str] = field(default_factory=dict)
     curves: dict[str, Any] = field(default_factory=dict, compare=False)  # Curves; pydantic knows no arrays
+    remarks: tuple[str, ...] = ()
     format: int = FORMAT
 
     @property

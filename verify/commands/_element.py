@@ -37,6 +37,13 @@ def material(
     path: Annotated[
         Path | None, typer.Option(help="CSV file with a strain path: columns exx, eyy and exy, or gxy = 2 exy.")
     ] = None,
+    units: Annotated[
+        str,
+        typer.Option(
+            help="Of the strains in the file: percent or fraction.",
+            show_default="as its header says, exx [%], or fraction",
+        ),
+    ] = "",
     stress: Annotated[
         float | None,
         typer.Option(help="Isotropic stress at the start, compression positive.", show_default="5000"),
@@ -55,7 +62,7 @@ def material(
         from mpm_verify.solver.plugins import create
 
         law = create(MATERIALS, name)
-        tests = chosen(test, path)
+        tests = chosen(test, path, units)
         confined = confining(law, stress)
         if not 1 <= steps <= 10_000:
             raise ValueError("--steps takes whole numbers from 1 to 10000")
@@ -69,7 +76,7 @@ def material(
     return conduct(lambda: examine(name, law, tests, confined, steps, command), page, folder, json_output, junit)
 
 
-def chosen(names: list[str] | None, path: Path | None) -> "list[ElementTest]":
+def chosen(names: list[str] | None, path: Path | None, units: str = "") -> "list[ElementTest]":
     """The tests that are asked for; a path alone is the only one. Raises ValueError."""
     from mpm_verify.cases.element.path_file import from_file
     from mpm_verify.cases.element.paths import TESTS
@@ -77,7 +84,9 @@ def chosen(names: list[str] | None, path: Path | None) -> "list[ElementTest]":
     for name in names or ():
         if name not in TESTS:
             raise ValueError(f"no test {name!r}; choose from {', '.join(TESTS)}")
-    own = [from_file(path)] if path else []
+    if units and not path:
+        raise ValueError("--units belongs to --path FILE.csv")
+    own = [from_file(path, units)] if path else []
     return [TESTS[name] for name in dict.fromkeys(names or (() if path else TESTS))] + own
 
 
