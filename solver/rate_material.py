@@ -8,7 +8,7 @@ import numpy as np
 
 from mpm_verify.solver._jit import Function
 from mpm_verify.solver.objective import Rate, integrate
-from mpm_verify.solver.plugins import NEGATIVE_CONTROLS, RATES, available, load
+from mpm_verify.solver.plugins import NEGATIVE_CONTROLS, RATES, USUAL_RATE, available, load
 from mpm_verify.solver.state import Floats, Particles
 
 
@@ -22,7 +22,7 @@ class RateMaterial:
     a rate too: they are there to be seen failing.
     """
 
-    rate: str = "green_naghdi"
+    rate: str = USUAL_RATE
     memory: ClassVar[tuple[str, ...]] = ()
     respond: ClassVar[Function]
 

@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from mpm_verify.solver.sources import TOP
 
 from mpm_verify.solver import _jit, sources
 from mpm_verify.solver.plugins import available
-from mpm_verify.solver.sources import TOP
 
 FLOORS = ("solver", "mms", "cases", "reports", "verify")
 FILES = sorted(file for floor in FLOORS for file in (TOP / floor).rglob("*.py"))

@@ -32,7 +32,7 @@ from mpm_verify.solver.boundary import Walls, box, moving
 from mpm_verify.solver.damping import Damping
 from mpm_verify.solver.energy_budget import Budget, kinetic
 from mpm_verify.solver.layout import rectangle
-from mpm_verify.solver.plugins import MATERIALS, METHODS, SMOOTHINGS, TRANSFERS, create
+from mpm_verify.solver.plugins import MATERIALS, METHODS, SMOOTHINGS, TRANSFERS, create, split
 from mpm_verify.solver.rate_material import RateMaterial
 from mpm_verify.solver.state import Floats, Grid, Particles
 from mpm_verify.solver.step import Model, RunFailed, Scheme, advance, check_time_step
@@ -104,7 +104,7 @@ def law_of(run: ColumnRun) -> Any:
 def basis_of(run: ColumnRun) -> Any:
     """The basis, with the limit of the run unless it has its own; no domain is cut before it is stretched."""
     basis = create(METHODS, run.method)
-    own = "limit" in run.method or not hasattr(basis, "limit")
+    own = "limit=" in split(run.method)[1] or not hasattr(basis, "limit")
     return basis if own else replace(basis, limit=max(run.limit, sqrt(0.5 / run.ppc) * (1 + 1e-9)))
 
 

@@ -1,28 +1,20 @@
 """What a run of the column is and gives: ColumnRun, ColumnResult and ColumnStudy, data for store and reports."""
 
-import hashlib
-import json
-from dataclasses import asdict, dataclass, field
-from functools import cache
+from dataclasses import dataclass, field, replace
 from math import inf, sqrt
 from typing import Literal, get_args
 
+from mpm_verify.cases.harness.identity import digest
 from mpm_verify.cases.harness.study import FORMAT, Failure, Status
 from mpm_verify.solver.layout import per_side
-from mpm_verify.solver.sources import TOP, digest
+from mpm_verify.solver.plugins import MATERIALS, METHODS, SMOOTHINGS, TRANSFERS, label
 
 Start = Literal["none", "k0", "oedometric"]
 Wall = Literal["roller", "fixed"]
 MOST = 1000  # cells: 4 GB of grid
 STRIPS = 7  # of the width
 AT_REST = 1e-4  # kinetic energy of the grid, of the potential energy at first: a run below it rests
-PARTS = ("column/case", "column/run", "column/start", "column/measure", "harness/memory", "harness/study")
-
-
-@cache
-def sources_digest() -> str:
-    """Hash of every source that a stored number depends on."""
-    return digest([*TOP.glob("solver/**/*.py"), *(TOP / f"cases/{name}.py" for name in PARTS)])
+PLUGINS = {"method": METHODS, "law": MATERIALS, "transfer": TRANSFERS, "smoothing": SMOOTHINGS}
 
 
 @dataclass(frozen=True)
@@ -104,15 +96,16 @@ class ColumnRun:
         return 230.0 * stiff * self.aspect * self.ppc * self.cells**3 * self.duration / self.courant
 
     def __str__(self) -> str:
-        parts = [f"{self.method} {self.cells} cells wide, {self.ppc} per cell"]
-        parts += [f"damping {self.damping:g}"] * bool(self.damping) + [self.smoothing] * (self.smoothing != "none")
+        parts = [f"{label(self.method)} {self.cells} cells wide, {self.ppc} per cell"]
+        parts += [f"damping {self.damping:g}"] * bool(self.damping) + [label(self.smoothing)] * (
+            self.smoothing != "none"
+        )
         return ", ".join(parts)
 
     @property
     def digest(self) -> str:
-        """Name of the Result: hash of the parameters and of the sources, 16 hex digits. No damping is of no kind."""
-        same = asdict(self) | ({} if self.damping else {"damping_kind": "local"})
-        return hashlib.sha256((json.dumps(same, sort_keys=True) + sources_digest()).encode()).hexdigest()[:16]
+        """Name of the Result: hash of the parameters and of all that computes the run. No damping is of no kind."""
+        return digest(self if self.damping else replace(self, damping_kind="local"), PLUGINS)
 
 
 @dataclass(frozen=True)

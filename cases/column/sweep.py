@@ -21,8 +21,9 @@ from typing import Any, get_type_hints
 
 from pydantic import TypeAdapter, ValidationError
 
-from mpm_verify.cases.column.run import ColumnRun, ColumnStudy
+from mpm_verify.cases.column.run import PLUGINS, ColumnRun, ColumnStudy
 from mpm_verify.cases.harness.shipped import STUDIES, shipped
+from mpm_verify.solver.plugins import absolute
 
 ALLOWED = tuple(item.name for item in fields(ColumnRun) if item.name != "case")
 PARTS = ("title", "words", "finish", "run", "sweep")
@@ -93,7 +94,9 @@ def run_of(values: dict[str, Any]) -> ColumnRun:
     """A run. Raises ValueError with one line for a value that no column has."""
     from mpm_verify.cases.column.case import check
 
-    run = ColumnRun(**{key: strictly(key, value) for key, value in values.items()})
+    read: dict[str, Any] = {key: strictly(key, value) for key, value in values.items()}
+    read |= {key: absolute(read[key]) for key in PLUGINS if key in read}
+    run = ColumnRun(**read)
     check(run)
     return run
 

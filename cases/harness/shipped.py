@@ -2,7 +2,7 @@
 
 import tomllib
 
-from mpm_verify.solver.sources import TOP
+from mpm_verify.solver.source_hash import TOP
 
 STUDIES = TOP / "cases" / "column" / "studies"
 

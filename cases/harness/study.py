@@ -1,33 +1,19 @@
 """What is run and what is expected of it: Run, Result and Study, data that the store writes and the report reads."""
 
-import hashlib
-import json
-from dataclasses import asdict, dataclass, field
-from functools import cache
+from dataclasses import dataclass, field
 from math import inf
 from typing import Literal
 
+from mpm_verify.cases.harness.identity import digest
 from mpm_verify.cases.judging.records import Expectation
 from mpm_verify.mms.blind_spots import BlindSpot
-from mpm_verify.solver.plugins import identity
-from mpm_verify.solver.sources import TOP, digest
+from mpm_verify.solver.plugins import LAYOUTS, MATERIALS, METHODS, SOLUTIONS, TRANSFERS, label
 
 FORMAT = 1  # of study.json and of every Result; a reader refuses another number
 QUANTITIES = ("u", "v", "F", "sigma")
 NORMS = ("rms", "max", "final", "printed")
 Status = Literal["finished", "failed"]
-
-
-@cache
-def sources_digest() -> str:
-    """Hash of every source that a stored number depends on: the solver, the derivation, the norms and the cases."""
-    files = [
-        *TOP.glob("solver/**/*.py"),
-        *TOP.glob("mms/**/*.py"),
-        *(TOP / f"cases/mms/{name}.py" for name in ("case", "norms", "gaps", "packing")),
-        TOP / "cases/harness/memory.py",
-    ]
-    return digest(files)
+PLUGINS = {"method": METHODS, "solution": SOLUTIONS, "material": MATERIALS, "transfer": TRANSFERS, "layout": LAYOUTS}
 
 
 @dataclass(frozen=True)
@@ -64,18 +50,12 @@ class Run:
         return self.cells**3 * self.ppc / self.courant
 
     def __str__(self) -> str:
-        return f"{self.method} {self.cells}² cells, {self.ppc} per cell"
+        return f"{label(self.method)} {self.cells}² cells, {self.ppc} per cell"
 
     @property
     def digest(self) -> str:
-        """Name of the Result: hash of the parameters and of the sources, 16 hex digits."""
-        return _digest(self, sources_digest())
-
-
-@cache
-def _digest(run: Run, sources: str) -> str:
-    text = json.dumps({**asdict(run), "solution": identity(run.solution)}, sort_keys=True) + sources
-    return hashlib.sha256(text.encode()).hexdigest()[:16]
+        """Name of the Result: hash of the parameters and of all that computes the run, 16 hex digits."""
+        return digest(self, PLUGINS)
 
 
 @dataclass(frozen=True)

@@ -5,13 +5,13 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from functools import cache
 from math import ceil, sqrt
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from mpm_verify.cases.harness.environment import environment
+from mpm_verify.cases.harness.identity import identity
 from mpm_verify.cases.harness.memory import forget_peak, peak_memory
-from mpm_verify.cases.harness.store import Arrays
 from mpm_verify.cases.harness.study import QUANTITIES, Failure, Result, Run
 from mpm_verify.cases.mms.gaps import LOOKS, Gaps
 from mpm_verify.cases.mms.norms import Norms, compare, new_shares
@@ -21,9 +21,12 @@ from mpm_verify.mms.blind_spots import BlindSpot
 from mpm_verify.mms.manufacture import Manufactured, manufacture
 from mpm_verify.solver.boundary import box, moving
 from mpm_verify.solver.layout import CENTRED, Layout, parallelograms
-from mpm_verify.solver.plugins import LAYOUTS, MATERIALS, METHODS, SOLUTIONS, TRANSFERS, create, load
+from mpm_verify.solver.plugins import LAYOUTS, MATERIALS, METHODS, SOLUTIONS, TRANSFERS, create
 from mpm_verify.solver.state import Floats, Grid, Particles
 from mpm_verify.solver.step import Model, RunFailed, Scheme, advance, check_time_step
+
+if TYPE_CHECKING:  # the store reads the records of every case, and a case is not known by the others
+    from mpm_verify.cases.harness.store import Arrays
 
 PIECE = 4096  # particles
 COUNTED = 40_000  # particles: the outline of a uniform layout with more takes as long as the run's first steps
@@ -67,7 +70,7 @@ def setup(run: Run) -> tuple[Model, Comparison, int]:
     dt = solution.duration / steps
     behind = 0.5 * dt if run.staggered else 0.0
 
-    exact, basis = manufactured(run.solution, run.material), load(METHODS, run.method)()
+    exact, basis = manufactured(run.solution, run.material), create(METHODS, run.method)
     layout = laid_out(run, solution, exact)
     particles, X = basis.populate(layout, material.rho0, lambda places: exact.x(places, 0.0)), layout.X
     particles.x, particles.v = exact.x(X, 0.0), exact.v(X, -behind)
@@ -102,20 +105,32 @@ def width(solution: Any) -> float:
     return float(solution.upper[0] - solution.lower[0])
 
 
-@cache
 def manufactured(solution: str, material: str) -> Manufactured:
-    """The exact solution of two specifications, derived and compiled once in a process."""
+    """The exact solution of two specifications, derived and compiled once in a process for what they now stand for."""
+    return _manufactured(solution, material, _now(solution, material))
+
+
+def audited(solution: str, material: str) -> tuple[BlindSpot, ...]:
+    """The auditor's lines on two specifications, once in a process for what they now stand for."""
+    return _audited(solution, material, _now(solution, material))
+
+
+def _now(solution: str, material: str) -> tuple[str, str]:
+    return identity(SOLUTIONS, solution), identity(MATERIALS, material)
+
+
+@cache
+def _manufactured(solution: str, material: str, now: tuple[str, str]) -> Manufactured:
     law: Any = create(MATERIALS, material)
     return manufacture(create(SOLUTIONS, solution), law, law.rho0)
 
 
 @cache
-def audited(solution: str, material: str) -> tuple[BlindSpot, ...]:
-    """The auditor's lines on two specifications, once in a process."""
+def _audited(solution: str, material: str, now: tuple[str, str]) -> tuple[BlindSpot, ...]:
     return audit(manufactured(solution, material), create(SOLUTIONS, solution), create(MATERIALS, material)).spots
 
 
-def execute(run: Run, tick: Callable[[float], None] = lambda share: None) -> tuple[Result, Arrays]:
+def execute(run: Run, tick: Callable[[float], None] = lambda share: None) -> "tuple[Result, Arrays]":
     """Run to the end, or to where it cannot go on: a failed run is a Result. `tick` hears the share that is done."""
     forget_peak()
     model, comparison, steps = setup(run)
@@ -190,7 +205,7 @@ def round_off(scale: dict[str, float], model: Model) -> dict[str, float]:
     return {quantity: float(walk * size[quantity]) for quantity in QUANTITIES}
 
 
-def snapshot(run: Run, model: Model, comparison: Comparison) -> Arrays:
+def snapshot(run: Run, model: Model, comparison: Comparison) -> "Arrays":
     """The particles at the last step in the initial order, float32, for figures; points are drawn as if with CPDI.
 
     Piece by piece: in double precision and at once, it would be the peak of the run's memory.

@@ -5,7 +5,7 @@ and the position of the particles in their cells, `replicates`, at every point o
 """
 
 import re
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields, is_dataclass, replace
 from math import isqrt
 from typing import Any
 
@@ -20,9 +20,9 @@ from mpm_verify.solver.plugins import (
     SOLUTIONS,
     TRANSFERS,
     absolute,
-    available,
     create,
     is_file,
+    label,
     split,
 )
 from mpm_verify.solver.stress_update import check_stress_update
@@ -64,8 +64,7 @@ class Sweep:
     def check(self) -> None:
         """Raise ValueError with one line that says what is wrong and what is allowed."""
         for method in self.methods:
-            if method not in available(METHODS):
-                raise ValueError(f"no method {method!r}; choose from {', '.join(available(METHODS))}")
+            create(METHODS, method)
         for count in self.cells:
             if not 2 <= count <= 4096:
                 raise ValueError(
@@ -102,9 +101,10 @@ def build(sweep: Sweep, command: str, name: str) -> Study:
     solution = canonical(SOLUTIONS, sweep.solution)
     material = canonical(MATERIALS, sweep.material or create(SOLUTIONS, solution).material)
     transfer = canonical(TRANSFERS, sweep.transfer)
+    methods = tuple(dict.fromkeys(canonical(METHODS, method) for method in sweep.methods))
     declared = tuple(
         declare(sweep, (method, solution, material), ppc, quantity, norm)
-        for method in sweep.methods
+        for method in methods
         for ppc in sorted(set(sweep.ppc))
         for quantity in QUANTITIES
         for norm in NORMS
@@ -113,7 +113,7 @@ def build(sweep: Sweep, command: str, name: str) -> Study:
     first = Run("", solution, material, 1, 1, sweep.courant, transfer, sweep.stress, sweep.staggered, sweep.force)
     runs = [
         replace(first, method=method, cells=cells, ppc=ppc, layout=layout)
-        for method in sweep.methods
+        for method in methods
         for ppc in sorted(set(sweep.ppc))
         for cells in sorted(set(sweep.cells))
     ]
@@ -126,10 +126,8 @@ def build(sweep: Sweep, command: str, name: str) -> Study:
     timed = [replace(run, courant=courant) for run in finest for courant in sorted(set(sweep.times), reverse=True)]
     shifted = [replace(run, offset=offset) for run in runs for offset in offsets(sweep.replicates)[1:]]
     every = tuple(dict.fromkeys(runs + halved + timed + shifted))
-    named = (
-        " and ".join(m.upper() for m in sweep.methods) if len(sweep.methods) < 4 else f"{len(sweep.methods)} methods"
-    )
-    title = f"{named} against the manufactured solution {solution}"
+    named = " and ".join(label(m).upper() for m in methods) if len(methods) < 4 else f"{len(methods)} methods"
+    title = f"{named} against the manufactured solution {label(solution)}"
     return Study(name, title, command, every, declared)
 
 
@@ -169,7 +167,8 @@ def belongs(declared: QuantityPlan, run: Run) -> bool:
 def canonical(package: str, specification: str) -> str:
     """The specification with only the parameters that differ from their defaults, sorted: one name for one thing."""
     plugin: Any = create(package, specification)
-    values = {item.name: (getattr(plugin, item.name), item.default) for item in fields(plugin)}
+    known = fields(plugin) if is_dataclass(plugin) else ()
+    values = {item.name: (getattr(plugin, item.name), item.default) for item in known}
     changed = [
         f"{key}={str(value).removesuffix('.0')}" for key, (value, usual) in sorted(values.items()) if value != usual
     ]

@@ -12,6 +12,7 @@ from mpm_verify.cases.harness.axes import middle
 from mpm_verify.cases.harness.study import QuantityPlan, Study
 from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.cases.judging.stall import Stall
+from mpm_verify.solver.plugins import label
 
 STYLES = {"PASS": "bold green", "FAIL": "bold red", "INCONCLUSIVE": "bold yellow", "ERROR": "bold magenta"}
 ALWAYS = ("u", "rms")
@@ -58,7 +59,7 @@ def errors_table(found: Sequence[Finding]) -> Table:
     table.add_column("")
     for finding in found:
         for number, row in enumerate(rows(finding)):
-            solution = finding.plan.solution if number == 0 else ""
+            solution = label(finding.plan.solution) if number == 0 else ""
             table.add_row(*((solution,) if several else ()), *row)
     return table
 
@@ -66,7 +67,7 @@ def errors_table(found: Sequence[Finding]) -> Table:
 def rows(finding: Finding) -> Iterator[tuple[str, ...]]:
     """A row a level; names once a block."""
     d, orders = finding.plan, iter(finding.verdict.local_orders)
-    first, earlier = (d.method, str(d.ppc), f"{d.quantity} {d.norm}"), False
+    first, earlier = (label(d.method), str(d.ppc), f"{d.quantity} {d.norm}"), False
     for level, passed in zip_longest(finding.levels, finding.crossings):
         cells, faces = f"{1 / level.h:.0f}", "" if passed is None else f"{passed:.1f}"
         if level.ended:
@@ -95,8 +96,8 @@ def sentence(finding: Finding, several: bool = False) -> Text:
 
 def named(declared: QuantityPlan, several: bool) -> str:
     """What a sentence is about, with its solution if the study has several."""
-    solution = f" on {declared.solution}" if several else ""
-    return f"{declared.method}{solution}, {declared.ppc} per cell, {declared.quantity} in {declared.norm}"
+    solution = f" on {label(declared.solution)}" if several else ""
+    return f"{label(declared.method)}{solution}, {declared.ppc} per cell, {declared.quantity} in {declared.norm}"
 
 
 def stall(finding: Finding, found: Stall, several: bool = False) -> Text:
