@@ -88,7 +88,8 @@ def _last_use(folder: Path) -> float:
     """When it was marked as in use; of a former version, when a file in it was last read or written."""
     if not FORMER.fullmatch(folder.name):
         return folder.stat().st_mtime
-    return max(max(item.stat().st_mtime, item.stat().st_atime) for item in (folder, *folder.rglob("*")))
+    files = [item.stat() for item in folder.rglob("*") if item.is_file()]  # to list a folder is to read it
+    return max([folder.stat().st_mtime, *(max(file.st_mtime, file.st_atime) for file in files)])
 
 
 @contextmanager

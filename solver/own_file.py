@@ -25,7 +25,7 @@ PREFIX = "own_"  # of the package of a user's file
 
 @dataclass(frozen=True)
 class Held:
-    """A module that was executed, what its files held then, and the hash of what it derived from."""
+    """A module that was executed, the text of each file when it was, and the hash of what it derived from."""
 
     module: ModuleType
     files: dict[str, bytes]
@@ -40,10 +40,9 @@ def module_of(path: Path) -> ModuleType:
     file = path.resolve()
     held = _held.get(file)
     if held is None or any(_content(one) != content for one, content in held.files.items()):
-        module = _executed(path, file)
-        held = _held[file] = Held(module, {}, digest(vars(module)))
-    for one in _beside(held.module.__name__):  # a function may import one later
-        held.files.setdefault(str(one.__file__), _content(str(one.__file__)))
+        files: dict[str, bytes] = {}
+        module = _executed(path, file, files)
+        held = _held[file] = Held(module, files, digest(vars(module)))
     return held.module
 
 
@@ -128,7 +127,8 @@ def _content(file: str) -> bytes:
         return b""
 
 
-def _executed(path: Path, file: Path) -> ModuleType:
+def _executed(path: Path, file: Path, files: dict[str, bytes]) -> ModuleType:
+    """The module of a file; it and those that it imports from beside it, now or later, write their texts to `files`."""
     try:
         file.read_text(encoding="utf-8")
     except OSError as error:
@@ -140,6 +140,7 @@ def _executed(path: Path, file: Path) -> ModuleType:
         del sys.modules[name]
     package = sys.modules[family] = ModuleType(family)
     package.__path__ = [str(file.parent)]
+    vars(package)["files"] = files
     name = f"{family}.{file.stem.replace('.', '_')}"
     spec = spec_from_loader(name, Loader(name, str(file)))
     assert spec is not None
@@ -153,7 +154,9 @@ class Loader(SourceFileLoader):
 
     def get_code(self, fullname: str) -> CodeType:
         """The compiled text, from no __pycache__."""
-        code: CodeType = self.source_to_code(self.get_data(self.path), self.path)
+        text = self.get_data(self.path)
+        vars(sys.modules[fullname.partition(".")[0]])["files"][self.path] = text
+        code: CodeType = self.source_to_code(text, self.path)
         return code
 
     def exec_module(self, module: ModuleType) -> None:

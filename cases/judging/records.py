@@ -2,10 +2,12 @@
 
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mpm_verify.cases.judging.fit import Contamination
+if TYPE_CHECKING:  # a run's records know an Expectation, and no edit of a fit makes them be run again
+    from mpm_verify.cases.judging.fit import Contamination
 
 
 class Outcome(StrEnum):
@@ -87,4 +89,4 @@ class Verdict:
     reason: str
     local_orders: tuple[float, ...] = ()
     window: tuple[int, int] | None = None
-    contamination: Contamination | None = None
+    contamination: "Contamination | None" = None
