@@ -20,10 +20,10 @@ from mpm_verify.cases.harness.checks import Examination, load, save
 from mpm_verify.cases.objectivity.findings import ObjectivityRemark
 from mpm_verify.cases.objectivity.rates import order_checks, order_errors
 from mpm_verify.mms.blind_spots import ALWAYS, RULES, SEEN_BY, BlindSpot, SpotCode, judge
-from mpm_verify.reports.sentences import blind_spots, column, element, objectivity, remarks
+from mpm_verify.reports.sentences import blind_spots, column, element, numbers, objectivity, remarks
 from mpm_verify.verify.main import main
 
-MODULES = (blind_spots, column, element, objectivity, remarks)
+MODULES = (blind_spots, column, element, numbers, objectivity, remarks)
 EVERY: dict[str, type] = {"column": ColumnRemark, "element": ElementRemark, "objectivity": ObjectivityRemark}
 
 
@@ -157,3 +157,9 @@ def test_every_failure_of_an_element_has_words(cause: ElementFailure) -> None:
     text = element.failed({"cause": cause, "left": 1e-3, "step": 3, "steps": 20})
     assert text.startswith("It failed at step 3 of 20: ")
     assert text.endswith(".")
+
+
+@pytest.mark.parametrize(("fraction", "text"), [(0.9998, "100 %"), (1.6, "160 %"), (0.0312, "3.1 %"), (0.0, "0 %")])
+def test_percentages_have_no_exponent(fraction: float, text: str) -> None:
+    assert numbers.percent(fraction) == text
+    assert numbers.span(fraction, fraction + 1e-6) == f"{fraction:.2f}"

@@ -44,7 +44,7 @@ def checks(study: ColumnStudy, ran: Sequence[FinishedRun]) -> list[Check]:
          STABLE, "stability of the step"),
     ]  # fmt: skip
     rested = sum(one.values["on_grid"] <= AT_REST * float(one.curves["potential"][0]) for one in ran)
-    found = [Check("Runs", f"runs at rest, of {len(study.runs)}", float(rested), float(study.finish),
+    found = [Check("Runs", f"runs at rest out of {len(study.runs)}", float(rested), float(study.finish),
                    "at least", "declared by the study")]  # fmt: skip
     way: Way = "at most"
     for name, runs, numbers, bound, source in asked:
