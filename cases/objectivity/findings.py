@@ -10,9 +10,10 @@ import numpy as np
 
 from mpm_verify.cases.harness.checks import Check, Curves, Remark
 from mpm_verify.cases.objectivity import block as full
+from mpm_verify.cases.objectivity.axes import Block
 from mpm_verify.cases.objectivity.exact import SIMPLE_SHEAR
 from mpm_verify.cases.objectivity.rates import ORDERS, SHEAR, slope
-from mpm_verify.cases.objectivity.turning_block import RAMP, Block
+from mpm_verify.cases.objectivity.turning_block import RAMP
 from mpm_verify.solver.plugins import RATES, available
 from mpm_verify.solver.state import Floats
 

@@ -1,13 +1,13 @@
 """The page of `verify material`: each element test with its curves, then the errors, then the material's own checks."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
 from mpm_verify.cases.harness.checks import Curves, Examination
-from mpm_verify.reports.components.examined import Section, checks_table, render
+from mpm_verify.reports.components.examined import Section, checks_table
+from mpm_verify.reports.components.examined_study import page as examined_page
 from mpm_verify.reports.components.page import Add, Image
 from mpm_verify.reports.components.show import Table
 from mpm_verify.reports.figures import element as draw
@@ -18,35 +18,7 @@ from mpm_verify.reports.words import order, sci
 
 def page(record: Record, vtk: bool = False) -> Path:
     """Write the page; its path. There are no snapshots, whatever `vtk` says. Raises StoreError."""
-    found = record.analysis.more.examinations
-    whole = merged(record, list(found.values()))
-    return render(
-        record.store.folder, whole, lambda _, add: every(found, add), ("svg", "pdf")
-    )  # PNG takes half the time
-
-
-def merged(record: Record, found: Sequence[Examination]) -> Examination:
-    """One Examination of all, for what stands once on the page."""
-    first = found[0]
-    study = record.study
-    checks = tuple(check for one in found for check in one.checks)
-    return replace(first, title=study.title, checks=checks, findings=tuple(f for one in found for f in one.findings))
-
-
-def numbered(add: Add, number: int) -> Add:
-    """The same, with a number behind the names of figures."""
-    return lambda key, figure, alt: add(f"{key}_{number}", figure, alt)
-
-
-def every(found: Mapping[str, Examination], add: Add) -> Sequence[Section]:
-    """The sections of each, with its name in front where there are several."""
-    if len(found) == 1:
-        return sections(next(iter(found.values())), add)
-    parts = []
-    for number, (name, one) in enumerate(found.items(), 1):
-        mine = sections(one, numbered(add, number))
-        parts += [replace(part, key=f"{part.key}-{number}", heading=f"{name}: {part.heading}") for part in mine]
-    return parts
+    return examined_page(record, sections, ("svg", "pdf"))  # some two dozen figures: PNG takes half the time
 
 
 def sections(examination: Examination, add: Add) -> Sequence[Section]:
