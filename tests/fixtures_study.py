@@ -8,9 +8,10 @@ import numpy as np
 
 from mpm_verify.cases.harness import study as contract
 from mpm_verify.cases.harness.store import Arrays, Store
-from mpm_verify.cases.harness.study import NORMS, QUANTITIES, Failure, QuantityPlan, Result, Run, Study
+from mpm_verify.cases.harness.study import NORMS, QUANTITIES, QuantityPlan, Result, Run, Study
 from mpm_verify.cases.judging.order import Expectation
 from mpm_verify.mms.blind_spots import ALWAYS, BlindSpot
+from mpm_verify.solver.failure import Failure, FailureKind
 
 CELLS = (8, 16, 32, 64, 128)
 U_RMS: dict[tuple[str, int], tuple[float, ...]] = {  # the runs behind the last number failed
@@ -85,7 +86,9 @@ def _result(run: Run) -> Result:
     level = CELLS.index(run.cells)
     particles, steps = run.ppc * run.cells**2, round(2 * run.cells / run.courant)
     lost = level >= len(known)
-    failure = Failure("det F <= 0", steps // 3, 7 * run.cells, (run.cells // 4, run.cells // 2)) if lost else None
+    failure = (
+        Failure(FailureKind.INVERTED, steps // 3, 7 * run.cells, (run.cells // 4, run.cells // 2)) if lost else None
+    )
     rms = 0.0 if lost else known[level] * (1.004 if run.courant < 0.4 else 1.0)
     errors = {} if lost else {q: _norms(rms * SIZE[q], steps * particles) for q in QUANTITIES}
     return Result(

@@ -13,8 +13,9 @@ import pytest
 
 from mpm_verify.cases.harness import study as contract
 from mpm_verify.cases.harness.store import Store, StoreError
-from mpm_verify.cases.harness.study import Failure, QuantityPlan, Result, Run, Study, sources_digest
+from mpm_verify.cases.harness.study import QuantityPlan, Result, Run, Study, sources_digest
 from mpm_verify.cases.judging.order import Expectation
+from mpm_verify.solver.failure import Failure, FailureKind
 
 RUN = Run("cpdi", "axis_aligned", "neo_hookean", 8, 4, 0.4)
 OTHER = {str: "other", int: 7, float: 0.125, tuple: (0.25, 0.0)}
@@ -47,8 +48,13 @@ def no_space(*_: object, **__: object) -> None:
     "result",
     [
         finished(),
-        replace(finished(), status="failed", errors={}, failure=Failure("det F <= 0", 21, 35, (2, 2))),
-        replace(finished(), status="failed", errors={}, failure=Failure("dt above the stability limit")),
+        replace(finished(), status="failed", errors={}, failure=Failure(FailureKind.INVERTED, 21, 35, (2, 2))),
+        replace(
+            finished(),
+            status="failed",
+            errors={},
+            failure=Failure(FailureKind.UNSTABLE_STEP, numbers={"dt": 0.2, "limit": 0.1}),
+        ),
     ],
     ids=["finished", "failed", "failed at once"],
 )

@@ -6,11 +6,14 @@ from dataclasses import replace
 import fixtures_study as fixtures
 import pytest
 
-from mpm_verify.cases.harness.study import QUANTITIES, Failure, QuantityPlan, Result, Run, Study
+from mpm_verify.cases.harness.study import QUANTITIES, QuantityPlan, Result, Run, Study
 from mpm_verify.cases.harness.verdicts import Finding, exit_code, findings, refinement
 from mpm_verify.cases.judging.order import Expectation, Outcome, Verdict
+from mpm_verify.cases.judging.records import Action, Ended, Reason, ReasonCode, Wanted
 from mpm_verify.cases.mms.expectations import later_with_9, registered, registry
 from mpm_verify.cases.mms.sweep import SOLUTIONS, Sweep, build, canonical
+from mpm_verify.reports.sentences import verdicts
+from mpm_verify.solver.failure import Failure, FailureKind
 from mpm_verify.solver.plugins import TRANSFERS, available
 
 PASS, FAIL, INCONCLUSIVE, ERROR = Outcome
@@ -18,6 +21,7 @@ JUDGED = QuantityPlan("cpdi", "axis_aligned", 4, "u", "rms", True, Expectation(2
 SHOWN = replace(JUDGED, judged=False, expectation=None)
 LEVELS = tuple(Run("cpdi", "axis_aligned", "neo_hookean", cells, 4, 0.4) for cells in (8, 16, 32, 64, 128))
 HALVED = replace(LEVELS[-1], courant=0.2)
+CELLS = (8, 16, 32, 64, 128)
 
 
 @pytest.fixture(autouse=True)
@@ -27,7 +31,7 @@ def sources() -> Iterator[None]:
 
 
 def finding(outcome: Outcome, declared: QuantityPlan = JUDGED) -> Finding:
-    return Finding(declared, Verdict(outcome, 2.0, None, None, "because"), (), None)
+    return Finding(declared, Verdict(outcome, 2.0, None, None, Reason(ReasonCode.AS_EXPECTED)), (), None)
 
 
 def made(runs: tuple[Run, ...]) -> dict[str, Result]:
@@ -39,7 +43,7 @@ def study(runs: tuple[Run, ...], *declared: QuantityPlan) -> Study:
 
 
 def lost(result: Result) -> Result:
-    return replace(result, status="failed", errors={}, floor={}, failure=Failure("det F <= 0", 21, 35, (2, 2)))
+    return replace(result, status="failed", errors={}, floor={}, failure=Failure(FailureKind.INVERTED, 21, 35, (2, 2)))
 
 
 # ---- exit code
@@ -98,14 +102,16 @@ def test_whole_study_passes() -> None:
 def test_without_the_halved_run_there_is_no_verdict() -> None:
     (found,) = findings(study(LEVELS, JUDGED), made(LEVELS))
     assert found.verdict.outcome is INCONCLUSIVE
-    assert "time step" in found.verdict.reason
+    assert found.verdict.reason.code is ReasonCode.TIME_STEP_UNKNOWN
+    assert found.verdict.reason.wanted == Wanted(Action.HALVE_FINEST, 1 / 128, CELLS)
 
 
 def test_halved_run_of_another_level_or_method_does_not_count() -> None:
     strangers = (replace(LEVELS[1], courant=0.2), replace(HALVED, ppc=9))
     runs = (*LEVELS, *strangers)
     (found,) = findings(study(runs, JUDGED), made(runs))
-    assert "time step" in found.verdict.reason
+    assert found.verdict.reason.code is ReasonCode.TIME_STEP_UNKNOWN
+    assert found.verdict.reason.wanted == Wanted(Action.HALVE_FINEST, 1 / 128, CELLS)
 
 
 def test_coupled_error_is_found_by_the_halved_run() -> None:
@@ -115,7 +121,8 @@ def test_coupled_error_is_found_by_the_halved_run() -> None:
     errors = {**half.errors, "u": {**half.errors["u"], "rms": 0.5 * half.errors["u"]["rms"]}}
     (found,) = findings(study(runs, JUDGED), {**results, HALVED.digest: replace(half, errors=errors)})
     assert found.verdict.outcome is INCONCLUSIVE
-    assert "coupled" in found.verdict.reason
+    assert found.verdict.reason.code is ReasonCode.TIME_STEP_COUPLED
+    assert found.verdict.reason.wanted == Wanted(Action.HALVE_ALL, 1 / 128, CELLS)
 
 
 def test_failed_halved_run_shows_nothing() -> None:
@@ -123,7 +130,8 @@ def test_failed_halved_run_shows_nothing() -> None:
     results = made(runs)
     (found,) = findings(study(runs, JUDGED), {**results, HALVED.digest: lost(results[HALVED.digest])})
     assert found.verdict.outcome is INCONCLUSIVE
-    assert "time step" in found.verdict.reason
+    assert found.verdict.reason.code is ReasonCode.TIME_STEP_UNKNOWN
+    assert found.verdict.reason.wanted == Wanted(Action.HALVE_FINEST, 1 / 128, CELLS)
 
 
 def test_failed_level_is_named_with_its_reason() -> None:
@@ -132,7 +140,10 @@ def test_failed_level_is_named_with_its_reason() -> None:
     failed = {**results, LEVELS[3].digest: lost(results[LEVELS[3].digest])}
     (found,) = findings(study(runs, JUDGED), failed)
     assert found.verdict.outcome is INCONCLUSIVE
-    assert "h=1/64 (det F <= 0 at step 21, particle 35 in cell (2, 2))" in found.verdict.reason
+    reason = found.verdict.reason
+    assert reason.code is ReasonCode.LEVEL_MISSING
+    assert reason.failed == (Ended(1 / 64, Failure(FailureKind.INVERTED, 21, 35, (2, 2))),)
+    assert "h=1/64 (det F ≤ 0 at step 21, particle 35 in cell (2, 2))" in verdicts.said(reason)
 
 
 def test_all_levels_failed_is_an_error() -> None:
@@ -146,7 +157,9 @@ def test_incomplete_store() -> None:
     runs = (*LEVELS, HALVED)
     (found,) = findings(study(runs, JUDGED), made(LEVELS[:3]))
     assert found.verdict.outcome is INCONCLUSIVE
-    assert "not run yet" in found.verdict.reason
+    assert found.verdict.reason.code is ReasonCode.LEVEL_MISSING
+    assert found.verdict.reason.failed[0].failure.kind is FailureKind.NOT_RUN
+    assert "not run yet" in verdicts.said(found.verdict.reason)
     assert found.finest is None
 
 
@@ -162,8 +175,8 @@ def test_expected_non_convergence_is_met_by_failed_runs() -> None:
     runs = tuple(replace(run, method="mpm") for run in LEVELS)
     (found,) = findings(study(runs, declared), made(runs))
     assert found.verdict.outcome is PASS
-    assert "does not converge, as expected" in found.verdict.reason
-    assert "det F <= 0" in found.verdict.reason
+    assert found.verdict.reason.code is ReasonCode.DIVERGES
+    assert [end.failure.kind for end in found.verdict.reason.failed] == [FailureKind.INVERTED]
 
 
 def test_findings_keep_the_order_of_the_declarations() -> None:
