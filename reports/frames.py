@@ -1,17 +1,23 @@
 """What a study folder holds, read once: the Study, its Results, and what the order rule says of them."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from mpm_verify.cases.harness.analysis import Analysis, analyse
 from mpm_verify.cases.harness.axes import level, middle, replicated
-from mpm_verify.cases.harness.series import Series, collect
-from mpm_verify.cases.harness.store import Arrays, Store
-from mpm_verify.cases.harness.study import QuantityPlan, Result, Run, Study
-from mpm_verify.cases.harness.verdicts import Finding, findings
+from mpm_verify.cases.harness.refinement import Series, collect
+from mpm_verify.cases.harness.store import Arrays, Store, case_of
+from mpm_verify.cases.harness.study import QuantityPlan, ResultRecord, Study
+from mpm_verify.cases.harness.verdicts import Finding
+from mpm_verify.reports.components import words
 from mpm_verify.solver.failure import FailureKind
+
+Run = Any  # of any case
+USUAL = ("method", "solution", "ppc")  # fields that name a refinement in every table
+Result = ResultRecord[Any]
 
 
 @dataclass(frozen=True)
@@ -23,35 +29,64 @@ class Record:
     """
 
     store: Store
-    study: Study
-    results: dict[str, Result]
+    study: Study[Any]
+    results: dict[str, Any]  # Results of the case
     earlier: bool
 
     @cached_property
-    def findings(self) -> list[Finding]:
-        """Findings in the order of the declarations."""
-        return findings(self.study, self.results)
+    def analysis(self) -> Analysis:
+        """Verdicts and checks."""
+        return analyse(self.study, self.results, self.store)
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """Findings in the order of the plans."""
+        return self.analysis.findings
 
     @cached_property
     def series(self) -> list[Series]:
         """One a method, solution and particle count; methods as declared by the study, fewest particles first."""
         return collect(self.study.runs)
 
-    def series_of(self, declared: QuantityPlan) -> Series:
+    @cached_property
+    def varied(self) -> tuple[str, ...]:
+        """Fields in which refinements differ, apart from method, solution and particle count."""
+        heads = [dict(series.head) for series in self.series]
+        return tuple(name for name in (heads[0] if heads else ())
+                     if name not in USUAL and len({head[name] for head in heads}) > 1)  # fmt: skip
+
+    @cached_property
+    def drawn(self) -> list[Series]:
+        """The refinements that figures show: of what else varies, those with the first value."""
+        first = {name: getattr(self.study.runs[0], name) for name in self.varied}
+        return [s for s in self.series if all(getattr(s.first, name) == value for name, value in first.items())]
+
+    def columns(self, run: Run) -> dict[str, Any]:
+        """What names the refinement of a run in a table."""
+        names = (*(name for name in USUAL if hasattr(run, name)), *self.varied)
+        return {name: getattr(run, name) for name in names}
+
+    def label(self, run: Run, solution: bool = True) -> str:
+        """Name of the refinement of a run on a page: method and particle count, and what else varies in the study."""
+        several = solution and len(self.solutions) > 1
+        more = [run.solution] * several + [f"{name} {getattr(run, name)}" for name in self.varied]
+        return ", ".join([words.series(run), *more])
+
+    def series_of(self, declared: QuantityPlan[Any]) -> Series:
         """The refinement that a declared quantity is measured on."""
-        return next(s for s in self.series if s.head == (declared.method, declared.solution, declared.ppc))
+        return next(s for s in self.series if s.head == declared.head)
 
     @property
     def solutions(self) -> list[str]:
-        """Each solution of the study once."""
-        return sorted({run.solution for run in self.study.runs})
+        """Each solution of the study once; none of a case without solutions."""
+        return sorted({run.solution for run in self.study.runs if hasattr(run, "solution")})
 
     @property
     def missing(self) -> list[Run]:
         """Runs that the study asks for and that are not stored."""
         return [run for run in self.study.runs if run.digest not in self.results]
 
-    def result(self, run: Run) -> Result | None:
+    def result(self, run: Run) -> Any:
         """The stored Result of a run, None if it is still to be done."""
         return self.results.get(run.digest)
 
@@ -60,7 +95,8 @@ class Record:
         result = self.result(run)
         if result is None or result.status == "failed":
             return None
-        return result.errors.get(quantity, {}).get(norm)
+        found: float | None = result.errors.get(quantity, {}).get(norm)
+        return found
 
     def errors(self, series: Series, quantity: str, norm: str) -> list[tuple[Run, float]]:
         """The finished levels of a series with their error, coarse to fine; of replicates the mean, as is judged."""
@@ -84,7 +120,7 @@ class Record:
 
 def read(folder: Path) -> Record:
     """The Record of a study folder. Raises StoreError if the folder is none or is broken."""
-    store = Store(folder)
+    store = Store(folder, case_of(folder))
     study = store.study()
     return Record(store, study, *held(store, study))
 
@@ -106,3 +142,14 @@ def _all(store: Store) -> Iterator[Result]:
         result = store.get(file.stem)
         if result is not None:
             yield result
+
+
+def joined(*parts: Mapping[str, Any]) -> dict[str, Any]:
+    """One row of several parts. Raises ValueError where two of them have a column of the same name."""
+    row: dict[str, Any] = {}
+    for part in parts:
+        both = row.keys() & part.keys()
+        if both:
+            raise ValueError(f"two columns of a table have the name {sorted(both)[0]!r}")
+        row |= part
+    return row

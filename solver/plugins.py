@@ -134,6 +134,16 @@ def create(package: str, specification: str) -> Any:
     return plugin(**parameters)
 
 
+def canonical(package: str, specification: str) -> str:
+    """The specification with only the parameters that differ from their defaults, sorted: one name for one thing."""
+    plugin: Any = create(package, specification)
+    values = {item.name: (getattr(plugin, item.name), item.default) for item in fields(plugin)}
+    changed = [
+        f"{key}={str(value).removesuffix('.0')}" for key, (value, usual) in sorted(values.items()) if value != usual
+    ]
+    return ":".join([split(absolute(specification))[0], *filter(None, [",".join(changed)])])
+
+
 def number(name: str, key: str, value: str) -> float:
     """The value of a parameter. Raises ValueError for what is no finite number."""
     try:

@@ -6,10 +6,11 @@ from unittest.mock import patch
 
 import numpy as np
 
-from mpm_verify.cases.harness import study as contract
 from mpm_verify.cases.harness.store import Arrays, Store
-from mpm_verify.cases.harness.study import NORMS, QUANTITIES, QuantityPlan, Result, Run, Study
+from mpm_verify.cases.harness.study import QuantityPlan, Study
 from mpm_verify.cases.judging.order import Expectation
+from mpm_verify.cases.mms import run as contract
+from mpm_verify.cases.mms.run import NORMS, QUANTITIES, Result, Run
 from mpm_verify.mms.blind_spots import ALWAYS, BlindSpot
 from mpm_verify.solver.failure import Failure, FailureKind
 

@@ -9,13 +9,13 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from mpm_verify.verify.examine import closest, conduct, document, sentence
 
 from mpm_verify.cases.harness.checks import Check, Examination, load, save
 from mpm_verify.cases.harness.store import StoreError
 from mpm_verify.cases.judging.records import Outcome
 from mpm_verify.reports.components.examined import Section, checks_table, digits, render
 from mpm_verify.reports.components.page import Add
-from mpm_verify.verify.examine import closest, conduct, document, sentence
 from mpm_verify.verify.main import main
 
 CURVES = {"run/block of 1 m": {"t": np.linspace(0, 1, 5), "xx": np.arange(5.0)}, "exact": {"t": np.zeros(0)}}

@@ -15,10 +15,10 @@ from typing import Any
 import fixtures_study as fixtures
 import pytest
 
-from mpm_verify.cases import mms
 from mpm_verify.cases.harness.shipped import shipped
 from mpm_verify.cases.harness.store import Store
-from mpm_verify.cases.harness.study import NORMS, QUANTITIES, Result
+from mpm_verify.cases.mms import case as mms
+from mpm_verify.cases.mms.run import NORMS, QUANTITIES, Result
 from mpm_verify.solver.plugins import available
 from mpm_verify.verify.main import app, main
 

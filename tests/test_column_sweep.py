@@ -5,9 +5,9 @@ from math import inf
 from pathlib import Path
 
 import pytest
+from mpm_verify.cases.column.sweep import read
 
 from mpm_verify.cases.column.run import ColumnRun
-from mpm_verify.cases.column.sweep import read
 from mpm_verify.cases.harness.shipped import shipped
 from mpm_verify.solver.sources import TOP
 

@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mpm_verify.cases import mms
-from mpm_verify.cases.harness.study import Result, Run
 from mpm_verify.cases.judging.order import Expectation, Level, Outcome, Verdict, judge
 from mpm_verify.cases.judging.records import ReasonCode
+from mpm_verify.cases.mms import case as mms
 from mpm_verify.cases.mms.case import Comparison
 from mpm_verify.cases.mms.expectations import expected
 from mpm_verify.cases.mms.norms import compare, new_shares
+from mpm_verify.cases.mms.run import Result, Run
 from mpm_verify.solver._jit import use_threads
 from mpm_verify.solver.boundary import Walls
 from mpm_verify.solver.state import Floats, Particles

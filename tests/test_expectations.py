@@ -3,9 +3,9 @@
 from pathlib import Path
 
 import pytest
+from mpm_verify.cases.mms.sweep import Sweep, build, canonical
 from typer.testing import CliRunner
 
-from mpm_verify.cases.harness.study import QUANTITIES
 from mpm_verify.cases.mms.expectations import (
     JUDGED_PPC,
     REGISTERED,
@@ -16,7 +16,7 @@ from mpm_verify.cases.mms.expectations import (
     registry,
 )
 from mpm_verify.cases.mms.methods import LEVELS, QUICK, Comparison, build_methods, everything
-from mpm_verify.cases.mms.sweep import Sweep, build, canonical
+from mpm_verify.cases.mms.run import QUANTITIES
 from mpm_verify.solver.failure import FailureKind
 from mpm_verify.solver.plugins import MATERIALS, METHODS, SOLUTIONS, available, create
 from mpm_verify.verify.main import app
@@ -101,7 +101,7 @@ def test_only_u_in_rms_is_judged() -> None:
 
 def test_the_study_of_all_methods_judges_each_on_each_solution() -> None:
     study = build_methods(everything(), "verify methods", "methods")
-    judged = [(d.method, d.solution) for d in study.plans if d.judged]
+    judged = [(d.run.method, d.run.solution) for d in study.plans if d.judged]
     assert len(judged) == len(set(judged)) == len(available(METHODS)) * len(LEVELS)
     assert len({run.digest for run in study.runs}) == len(study.runs)
     assert all(len(cells) >= 4 for cells in (*LEVELS.values(), *QUICK.values()))

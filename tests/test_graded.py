@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from mpm_verify.cases.mms.sweep import Sweep, build
 
-from mpm_verify.cases import mms as case
-from mpm_verify.cases.harness.study import NORMS, QUANTITIES, Result, Run
+from mpm_verify.cases.mms import case
 from mpm_verify.cases.mms.graded import Bounded, Plan, build_graded, cost_of, factor, kind, savings
 from mpm_verify.cases.mms.packing import counts, full_cells, outline
-from mpm_verify.cases.mms.sweep import Sweep, build
+from mpm_verify.cases.mms.run import NORMS, QUANTITIES, Result, Run
 from mpm_verify.mms.grading import Grading, equidistributed, expected_strain
 from mpm_verify.mms.manufacture import Manufactured
 from mpm_verify.reports.sentences import failures

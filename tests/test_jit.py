@@ -152,8 +152,8 @@ print(json.dumps(count()))
 
 def count() -> dict[str, tuple[int, int]]:
     """Cache hits and misses of every kernel, after a step of each basis with a manufactured body force."""
-    from mpm_verify.cases.harness.study import Run
     from mpm_verify.cases.mms.case import setup
+    from mpm_verify.cases.mms.run import Run
     from mpm_verify.solver.step import advance
 
     for method in available("mpm_verify.solver.basis"):

@@ -14,8 +14,8 @@ import fixtures_study as fixtures
 import pytest
 from jsonschema import Draft202012Validator, ValidationError
 
-from mpm_verify.cases import mms
-from mpm_verify.cases.harness.study import NORMS, QUANTITIES, Result
+from mpm_verify.cases.mms import case as mms
+from mpm_verify.cases.mms.run import NORMS, QUANTITIES, Result
 from mpm_verify.reports.export.document import SCHEMA, VERSION
 from mpm_verify.solver.failure import Failure, FailureKind
 from mpm_verify.verify.main import main

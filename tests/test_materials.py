@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-
 from mpm_verify.cases.mms.sweep import Sweep
+
 from mpm_verify.mms.manufacture import manufacture
 from mpm_verify.solver.elastic import Elastic
 from mpm_verify.solver.plugins import available, create, load

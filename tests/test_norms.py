@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mpm_verify.cases.harness.study import NORMS, QUANTITIES
 from mpm_verify.cases.judging.fit import local_orders
 from mpm_verify.cases.mms.norms import CHUNK, SHARES, Norms, compare, new_shares
+from mpm_verify.cases.mms.run import NORMS, QUANTITIES
 from mpm_verify.mms.manufacture import Manufactured, manufacture
 from mpm_verify.solver.material.neo_hookean import NeoHookean
 from mpm_verify.solver.plugins import create

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mpm_verify.cases.harness.study import Run
 from mpm_verify.cases.mms.case import execute
+from mpm_verify.cases.mms.run import Run
 from mpm_verify.mms.check import FINE, check, determinant, least_det
 from mpm_verify.mms.manufacture import manufacture
 from mpm_verify.mms.measure import Sampler

@@ -1,15 +1,15 @@
 """Recorded errors, small amplitudes and the separation by rotation, run anew."""
 
 import pytest
+from mpm_verify.cases.mms.sweep import canonical
 
 from mpm_verify.cases.harness.runner import InProcess, run_study
 from mpm_verify.cases.harness.store import Store
-from mpm_verify.cases.harness.study import Result, Run
 from mpm_verify.cases.harness.verdicts import findings
 from mpm_verify.cases.mms.case import execute
 from mpm_verify.cases.mms.expectations import RECORDED
 from mpm_verify.cases.mms.methods import Comparison, build_methods
-from mpm_verify.cases.mms.sweep import canonical
+from mpm_verify.cases.mms.run import Result, Run
 from mpm_verify.solver.plugins import MATERIALS, METHODS, SOLUTIONS, available, create
 
 pytestmark = pytest.mark.slow
@@ -33,7 +33,7 @@ def test_all_methods_are_of_second_order_while_nothing_crosses(solution: str, tm
     store = Store(tmp_path)
     store.create(study)
     results = run_study(study, store, InProcess(), 1)
-    found = {f.plan.method: str(f.verdict.outcome) for f in findings(study, results) if f.plan.judged}
+    found = {f.plan.run.method: str(f.verdict.outcome) for f in findings(study, results) if f.plan.judged}
     assert found == dict.fromkeys(available(METHODS), "PASS")
     assert all(result.crossings == 0 for result in results.values())
 

@@ -5,8 +5,8 @@ import math
 
 import pytest
 
-from mpm_verify.cases.harness.study import Run
 from mpm_verify.cases.mms.case import execute
+from mpm_verify.cases.mms.run import Run
 from mpm_verify.solver.failure import FailureKind
 
 CELLS = (8, 16, 32, 64, 128)

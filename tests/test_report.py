@@ -13,10 +13,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from mpm_verify.cases.harness import study as contract
 from mpm_verify.cases.harness.store import Store, StoreError
-from mpm_verify.cases.harness.study import QuantityPlan, Run
+from mpm_verify.cases.harness.study import QuantityPlan
 from mpm_verify.cases.judging.order import Expectation
+from mpm_verify.cases.mms import run as contract
+from mpm_verify.cases.mms.run import Run
 from mpm_verify.mms.blind_spots import ALWAYS
 from mpm_verify.reports.components import audited, words
 from mpm_verify.reports.components.cards import cards

@@ -10,12 +10,13 @@ from typing import Any
 import fixtures_study as fixtures
 import numpy as np
 import pytest
+from mpm_verify.cases.mms.sweep import Sweep, build
 
-from mpm_verify.cases import mms
 from mpm_verify.cases.harness.runner import RunnerError, Ticker, cost, pending, process_pool, run_study
 from mpm_verify.cases.harness.store import Arrays, Store, StoreError
-from mpm_verify.cases.harness.study import Result, Run, Study
-from mpm_verify.cases.mms.sweep import Sweep, build
+from mpm_verify.cases.harness.study import Study
+from mpm_verify.cases.mms import case as mms
+from mpm_verify.cases.mms.run import Result, Run
 
 
 class Serial(Executor):

@@ -6,15 +6,16 @@ from functools import cache
 
 import fixtures_study as fixtures
 import pytest
+from mpm_verify.cases.mms.sweep import Sweep, build
 
-from mpm_verify.cases import mms
-from mpm_verify.cases.harness.study import QuantityPlan, Result, Run, Study
+from mpm_verify.cases.harness.study import QuantityPlan, Study
 from mpm_verify.cases.harness.verdicts import Finding as Found
 from mpm_verify.cases.harness.verdicts import doublings, findings
 from mpm_verify.cases.judging.order import Expectation
 from mpm_verify.cases.judging.records import Ended
 from mpm_verify.cases.judging.stall import Cause, CauseCode, Finding, Measured, Peer, Stall, explain
-from mpm_verify.cases.mms.sweep import Sweep, build
+from mpm_verify.cases.mms import case as mms
+from mpm_verify.cases.mms.run import Result, Run
 from mpm_verify.reports.components import stalls as told
 from mpm_verify.reports.components import words
 from mpm_verify.reports.sentences import stalls as sentences
@@ -298,7 +299,7 @@ def real(solution: str = "axis_aligned") -> dict[tuple[str, int], Found]:
     study = build(Sweep(methods, solution, cells=(8, 16, 32), ppc=(4, 9)), "verify", "t")
     results: dict[str, Result] = {run.digest: mms.execute(run)[0] for run in study.runs}
     found = [f for f in findings(study, results) if (f.plan.quantity, f.plan.norm) == ("u", "rms")]
-    return {(f.plan.method, f.plan.ppc): f for f in found}
+    return {(f.plan.run.method, f.plan.run.ppc): f for f in found}
 
 
 @pytest.mark.parametrize(

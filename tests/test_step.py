@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mpm_verify.cases import mms
-from mpm_verify.cases.harness.study import Run
+from mpm_verify.cases.mms import case as mms
+from mpm_verify.cases.mms.run import Run
 from mpm_verify.solver._jit import BLOCK
 from mpm_verify.solver.boundary import box
 from mpm_verify.solver.failure import FailureKind, RunFailed

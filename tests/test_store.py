@@ -11,10 +11,11 @@ import fixtures_study as fixtures
 import numpy as np
 import pytest
 
-from mpm_verify.cases.harness import study as contract
 from mpm_verify.cases.harness.store import Store, StoreError
-from mpm_verify.cases.harness.study import QuantityPlan, Result, Run, Study, sources_digest
+from mpm_verify.cases.harness.study import QuantityPlan, Study
 from mpm_verify.cases.judging.order import Expectation
+from mpm_verify.cases.mms import run as contract
+from mpm_verify.cases.mms.run import Result, Run, sources_digest
 from mpm_verify.solver.failure import Failure, FailureKind
 
 RUN = Run("cpdi", "axis_aligned", "neo_hookean", 8, 4, 0.4)

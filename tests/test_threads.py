@@ -10,8 +10,9 @@ import pytest
 
 from mpm_verify.cases.harness.runner import process_pool, run_study
 from mpm_verify.cases.harness.store import Store
-from mpm_verify.cases.harness.study import Run, Study
+from mpm_verify.cases.harness.study import Study
 from mpm_verify.cases.mms.case import setup
+from mpm_verify.cases.mms.run import Run
 from mpm_verify.solver._jit import use_threads
 from mpm_verify.solver.boundary import box
 from mpm_verify.solver.failure import RunFailed

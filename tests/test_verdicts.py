@@ -5,13 +5,14 @@ from dataclasses import replace
 
 import fixtures_study as fixtures
 import pytest
+from mpm_verify.cases.mms.sweep import SOLUTIONS, Sweep, build, canonical
 
-from mpm_verify.cases.harness.study import QUANTITIES, QuantityPlan, Result, Run, Study
+from mpm_verify.cases.harness.study import QuantityPlan, Study
 from mpm_verify.cases.harness.verdicts import Finding, exit_code, findings, refinement
 from mpm_verify.cases.judging.order import Expectation, Outcome, Verdict
 from mpm_verify.cases.judging.records import Action, Ended, Reason, ReasonCode, Wanted
 from mpm_verify.cases.mms.expectations import later_with_9, registered, registry
-from mpm_verify.cases.mms.sweep import SOLUTIONS, Sweep, build, canonical
+from mpm_verify.cases.mms.run import QUANTITIES, Result, Run
 from mpm_verify.reports.sentences import verdicts
 from mpm_verify.solver.failure import Failure, FailureKind
 from mpm_verify.solver.plugins import TRANSFERS, available
@@ -202,12 +203,12 @@ REGISTERED = sorted({(entry.method, entry.solution) for entry in registry() if e
 @pytest.mark.parametrize(("method", "solution"), REGISTERED)
 def test_judged_is_u_in_rms_with_4_and_9_per_cell(method: str, solution: str) -> None:
     declared = built(methods=(method,), solution=solution).plan
-    judged = {(d.quantity, d.norm, d.ppc) for d in declared if d.judged}
+    judged = {(d.quantity, d.norm, d.run.ppc) for d in declared if d.judged}
     counts = (4,) if later_with_9(method, solution, registered(solution, method, "u")) else (4, 9)
     assert judged == {("u", "rms", ppc) for ppc in counts}
     assert len(declared) == 3 * 4 * 4  # each of 3 particle counts, 4 quantities and 4 norms is at least shown
     assert all(d.expectation is not None for d in declared if d.judged)
-    known = {(d.quantity, d.ppc) for d in declared if d.expectation}  # the others are shown beside it
+    known = {(d.quantity, d.run.ppc) for d in declared if d.expectation}  # the others are shown beside it
     assert known == {(quantity, ppc) for quantity in QUANTITIES for ppc in counts}
 
 

@@ -1,39 +1,35 @@
-"""The command `verify`: one file a subcommand, each a few lines that call down. Nothing heavy is imported here."""
+"""The command `verify`: one file a subcommand in verify/commands, found by its name; nothing heavy is imported here."""
 
 import contextlib
 import os
 import sys
 import traceback
-from typing import Annotated
+from importlib import import_module
+from pathlib import Path
+from typing import Annotated, Any
 
 import typer
 
-from mpm_verify.verify.commands.audit import audit
-from mpm_verify.verify.commands.column import column
-from mpm_verify.verify.commands.element import material
-from mpm_verify.verify.commands.expectations import expectations
-from mpm_verify.verify.commands.graded import graded
-from mpm_verify.verify.commands.list import list_plugins
-from mpm_verify.verify.commands.methods import methods
-from mpm_verify.verify.commands.mms import mms
-from mpm_verify.verify.commands.objectivity import objectivity
-from mpm_verify.verify.commands.report import report
-from mpm_verify.verify.commands.sweep import sweep
+from mpm_verify.verify.run import DEFECT, USAGE
 
-USAGE, STOPPED = 2, 130
+STOPPED = 130
+COMMANDS = ("mms", "methods", "graded", "column", "sweep", "element", "objectivity")  # first in the help, in this order
 
-app = typer.Typer(name="verify", rich_markup_mode=None, pretty_exceptions_enable=False)
-app.command("mms")(mms)
-app.command("methods")(methods)
-app.command("graded")(graded)
-app.command("audit")(audit)
-app.command("expectations")(expectations)
-app.command("material")(material)
-app.command("objectivity")(objectivity)
-app.command("column")(column)
-app.command("sweep")(sweep)
-app.command("list")(list_plugins)
-app.command("report")(report)
+
+def files() -> list[str]:
+    """Files of the commands: those of COMMANDS first, then by name."""
+    there = sorted(file.stem for file in Path(__file__).with_name("commands").glob("[a-z]*.py"))
+    return [*(name for name in COMMANDS if name in there), *(name for name in there if name not in COMMANDS)]
+
+
+def application(asked: str = "") -> Any:
+    """The Typer application: with the one command that is asked for, or with all of them."""
+    app = typer.Typer(name="verify", rich_markup_mode=None, pretty_exceptions_enable=False,
+                      context_settings={"help_option_names": ["-h", "--help"]})  # fmt: skip
+    app.callback(invoke_without_command=True)(root)
+    for name in [asked] if asked in files() else files():
+        import_module(f"mpm_verify.verify.commands.{name}").add(app)
+    return app
 
 
 def print_version(wanted: bool) -> None:
@@ -45,7 +41,6 @@ def print_version(wanted: bool) -> None:
         raise typer.Exit
 
 
-@app.callback(invoke_without_command=True)
 def root(
     context: typer.Context,
     version: Annotated[
@@ -54,7 +49,8 @@ def root(
 ) -> None:
     """Verification of the material point method: manufactured solutions, observed orders, verdicts, reports.
 
-    Exit codes: 0 pass, 1 fail, 2 usage or solver error, 3 inconclusive.
+    Exit codes: 0 pass, 1 fail, 2 usage or input, 3 inconclusive or nothing judged, 4 nothing could be judged because
+    runs ended in error, or a defect of verify.
     """
     if context.invoked_subcommand is None:
         typer.echo(context.get_help())
@@ -64,28 +60,32 @@ def root(
 def main() -> None:
     """Entry point: what is wrong in the input is one line on standard error, and exit code 2.
 
-    A defect of this program ends with 2 too, and with its traceback: 1 would read as a verdict.
+    A defect of this program ends with 4, and with its traceback: 1 would read as a verdict.
     """
     try:
-        code = app(standalone_mode=False)
+        code = application(next(iter(sys.argv[1:]), ""))(standalone_mode=False)
     except typer.TyperException as error:
-        code = complain(error.format_message() if hasattr(error, "format_message") else str(error))
+        message = error.format_message() if hasattr(error, "format_message") else str(error)
+        code = complain(message, getattr(error, "exit_code", USAGE))
+        code = USAGE if code == 1 else code
     except (typer.Abort, KeyboardInterrupt):
-        code = STOPPED
+        code = complain("stopped; what was finished is stored, and the same command goes on from there", STOPPED)
     except Exception:
-        traceback.print_exc()
-        code = complain("this is a defect of verify, not of what it verifies; please report it with the lines above")
-    if code == STOPPED:
-        complain("stopped; what was finished is stored, and the same command goes on from there")
+        with contextlib.suppress(OSError, ValueError, AttributeError):
+            traceback.print_exc()
+        code = complain(
+            "this is a defect of verify, not of what it verifies; please report it with the lines above", DEFECT
+        )
     sys.exit(code if isinstance(code, int) else 0)
 
 
-def complain(message: str) -> int:
-    """One line on standard error."""
+def complain(message: str, code: int = USAGE) -> int:
+    """One line on standard error, if anybody reads it; gives the exit code back."""
     if message.startswith("No such command"):
-        message = f"{message} Choose from {', '.join(str(command.name) for command in app.registered_commands)}."
-    print(f"verify: {' '.join(message.split())}", file=sys.stderr)
-    return USAGE
+        message = f"{message} Choose from {', '.join(files())}."
+    with contextlib.suppress(OSError, ValueError, AttributeError):
+        print(f"verify: {' '.join(message.split())}", file=sys.stderr)
+    return code
 
 
 def run() -> None:
@@ -93,7 +93,7 @@ def run() -> None:
     try:
         main()
     except SystemExit as end:
-        with contextlib.suppress(OSError, ValueError):
+        with contextlib.suppress(OSError, ValueError, AttributeError):
             sys.stdout.flush()
         os._exit(end.code if isinstance(end.code, int) else 0)
 

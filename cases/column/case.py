@@ -14,7 +14,7 @@ of F (Scheme.deformation), domains of limited length (solver/basis/cpdi.py) and 
 """
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, replace
 from math import ceil, inf, sqrt
 from typing import Any
@@ -22,6 +22,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mpm_verify.cases.column.exam import examine
 from mpm_verify.cases.column.measure import Measure, final, wave
 from mpm_verify.cases.column.run import ColumnResult, ColumnRun
 from mpm_verify.cases.column.start import stress
@@ -37,9 +38,17 @@ from mpm_verify.solver.rate_material import RateMaterial
 from mpm_verify.solver.state import Floats, Grid, Particles
 from mpm_verify.solver.step import Model, Scheme, advance, check_time_step
 
+__all__ = ["Result", "Run", "check", "examine", "execute"]
+
+Run, Result = ColumnRun, ColumnResult
 LOOKS, FRAMES, SNAPSHOTS = 200, 57, 8  # of a run: rows, places of particles, all fields
 DRAWN = 20_000  # particles of a frame
 MOST = 1e8  # steps
+
+
+def title(runs: Sequence[ColumnRun]) -> str:
+    """What a study of columns is called."""
+    return "Collapse of granular columns" if len(runs) > 1 else "Collapse of a granular column"
 
 
 def setup(run: ColumnRun) -> tuple[Model, int]:
@@ -85,17 +94,20 @@ def steps_of(run: ColumnRun, law: Any) -> int:
     return max(1, whole)
 
 
-def check(run: ColumnRun) -> None:
-    """Raises ValueError for what no column can have: by setting up a small one."""
-    steps_of(run, law_of(run))
-    setup(replace(run, cells=2, aspect=7.0, channel=18.0, courant=0.4, duration=1e-3))
+def check(runs: Sequence[ColumnRun]) -> None:
+    """Raises ValueError for what no column can have: by setting up a small one of each kind."""
+    for run in runs:
+        steps_of(run, law_of(run))
+    kinds = (replace(run, cells=2, ppc=4, aspect=7.0, channel=18.0, courant=0.4, duration=1e-3) for run in runs)
+    for kind in dict.fromkeys(kinds):
+        setup(kind)
 
 
 def law_of(run: ColumnRun) -> Any:
     """The law, with void-strain memory where it has one. Raises ValueError for one that the column cannot have."""
-    law = create(MATERIALS, run.law)
+    law = create(MATERIALS, run.material)
     if not isinstance(law, RateMaterial):
-        raise ValueError(f"the column must have a law in rate form, with a memory of its path, not {run.law}")
+        raise ValueError(f"the column must have a law in rate form, with a memory of its path, not {run.material}")
     if run.void and hasattr(law, "void") and not law.c:  # type: ignore[attr-defined]
         law = replace(law, void=1.0)  # type: ignore[call-arg]
     return law

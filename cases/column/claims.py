@@ -99,7 +99,7 @@ def told(axis: str, value: Any) -> str:
     after = {"cells": "cells wide", "ppc": "per cell", "damping_kind": "damping", "deformation": "F"}
     if axis in after or axis == "smoothing":
         return f"{value} {after.get(axis, axis)}"
-    if axis in ("method", "law"):
+    if axis in ("method", "material"):
         return str(value)
     return f"{axis} {f'{value:g}' if isinstance(value, float) else value}"
 
@@ -239,7 +239,7 @@ def of_smoothing(family: Sequence[FinishedRun], known: Experiment) -> list[Claim
 
 def of_law(family: Sequence[FinishedRun], known: Experiment) -> list[Claim]:
     """Figure 8."""
-    by = {one.run.law.partition(":")[0]: one for one in reversed(family)}
+    by = {one.run.material.partition(":")[0]: one for one in reversed(family)}
     if not {"mohr_coulomb", "ubcsand"} <= by.keys():
         return []
     plain, sand = by["mohr_coulomb"], by["ubcsand"]
@@ -272,5 +272,5 @@ SPEAK: dict[str, Speaker] = {
     "ppc": of_particles,
     "damping": of_damping,
     "smoothing": of_smoothing,
-    "law": of_law,
+    "material": of_law,
 }

@@ -11,7 +11,7 @@ from mpm_verify.cases.column.claims import CROWDED, Claim, FinishedRun, claims, 
 from mpm_verify.cases.column.experiment import UNCERTAIN, experiment
 from mpm_verify.cases.column.refined import Refined, Scattered, refinements, scatter
 from mpm_verify.cases.column.run import ColumnResult, ColumnRun, ColumnStudy
-from mpm_verify.cases.harness.checks import Examination
+from mpm_verify.cases.harness.checks import Check, Examination
 from mpm_verify.cases.harness.store import Store
 
 
@@ -27,12 +27,17 @@ class ColumnAnalysis:
     scattered: tuple[Scattered, ...]
     examination: Examination
 
+    @property
+    def checks(self) -> tuple[Check, ...]:
+        """What decides the exit code."""
+        return self.examination.checks
+
     def label(self, run: ColumnRun) -> str:
         """A run by what the study varies; by its method, mesh and law where it varies nothing."""
-        return shared(run, self.study.axes or ("method", "cells", "ppc", "law"))
+        return shared(run, self.study.axes or ("method", "cells", "ppc", "material"))
 
 
-def look(study: ColumnStudy, results: Mapping[str, ColumnResult], store: Store) -> ColumnAnalysis:
+def examine(study: ColumnStudy, results: Mapping[str, ColumnResult], store: Store) -> ColumnAnalysis:
     """Judge what is stored."""
     ended = [(run, results[run.digest]) for run in study.runs if run.digest in results]
     ran = tuple(FinishedRun(run, one.values, curves(store, one)) for run, one in ended if one.status == "finished")
@@ -79,5 +84,5 @@ def parameters(study: ColumnStudy, first: ColumnResult | None) -> dict[str, str]
     found = {key: str(value) for key, value in asdict(study.runs[0]).items() if key not in (*study.axes, "case")}
     if "damping" in found:
         found["damping"] = told("damping", study.runs[0].damping)
-    laws = first.parameters if first and "law" not in study.axes else {}
-    return found | {f"law: {key}": str(value) for key, value in laws.items() if key != "domain limit"}
+    laws = first.parameters if first and "material" not in study.axes else {}
+    return found | {f"material: {key}": str(value) for key, value in laws.items() if key != "domain limit"}

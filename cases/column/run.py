@@ -1,15 +1,14 @@
-"""What a run of the column is and gives: ColumnRun, ColumnResult and ColumnStudy, data for store and reports."""
+"""What a run of the column is and gives: Run, ColumnResult and ColumnStudy, data for store and reports."""
 
 import hashlib
 import json
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass
 from functools import cache
-from math import inf, sqrt
-from typing import Literal, get_args
+from math import inf, isqrt, sqrt
+from typing import ClassVar, Literal, get_args
 
-from mpm_verify.cases.harness.study import FORMAT, Status
-from mpm_verify.solver.failure import Failure
-from mpm_verify.solver.layout import per_side
+from mpm_verify.cases.harness.study import ResultRecord, RunRecord, Study, axis
+from mpm_verify.solver.plugins import MATERIALS, METHODS, SMOOTHINGS, TRANSFERS
 from mpm_verify.solver.sources import TOP, digest
 
 Start = Literal["none", "k0", "oedometric"]
@@ -27,45 +26,46 @@ def sources_digest() -> str:
 
 
 @dataclass(frozen=True)
-class ColumnRun:
+class ColumnRun(RunRecord):
     """One column; defaults are those of the paper's Table 1, what it leaves open is said in cases/column/case.py.
 
-    `method`, `law`, `transfer` and `smoothing` are specifications, smoothing may be "none"; `cells` of the width;
-    `damping`: its alpha; `courant`: dt c/dx, c the law's compression wave; `duration` and `gate` (speed at which the
-    gate is lifted, inf: gone at once) in SI units; `start`: initial stress; `left`: the wall at x = 0; `stops`: see
+    `method`, `material`, `transfer` and `smoothing` are specifications, smoothing may be "none"; `cells` of the width;
+    `damping`: its alpha; `courant`: dt c/dx, c the compression wave; `duration` and `gate` (speed at which the gate
+    is lifted, inf: gone at once) in SI units; `start`: initial stress; `left`: the wall at x = 0; `stops`: see
     solver.boundary.Walls; `offset` shifts the particles in their cells, by shares of their spacing; `mirror` puts the
     wall to the right. What keeps the column alive: `limit` of the half diagonals of CPDI domains, in cells (inf: none;
     never below what a particle begins with), `void`-strain memory of laws that have one and no cohesion, and the
     exponential `deformation`. Raises ValueError with one line for what no column has.
     """
 
-    method: str = "cpdi"
-    cells: int = 14
-    ppc: int = 9
-    law: str = "mohr_coulomb"
-    damping: float = 0.0
-    damping_kind: str = "local"
-    smoothing: str = "none"
-    transfer: str = "flip"
-    deformation: str = "exponential"
-    limit: float = 0.5
-    void: bool = True
-    courant: float = 0.4
-    duration: float = 1.4
-    start: Start = "none"
-    left: Wall = "roller"
-    gate: float = inf
-    stops: bool = True
-    offset: tuple[float, float] = (0.0, 0.0)
-    mirror: bool = False
-    width: float = 0.0905
-    aspect: float = 7.0
-    channel: float = 18.0
-    g: float = 10.0
-    case: str = "column"
+    method: str = axis("cpdi", "Basis of the method.", METHODS)
+    cells: int = axis(14, "Cells of the column's width; the paper prints 135.")
+    ppc: int = axis(9, "Particles per cell, square numbers.")
+    material: str = axis("mohr_coulomb", "Constitutive model in rate form.", MATERIALS)
+    damping: float = axis(0.0, "Fraction of the unbalanced force at each node, 0.05 for 5 %.")
+    damping_kind: str = axis("local", "local (component by component) or objective.")
+    smoothing: str = axis("none", "none, or smoothing of rates and stresses.", SMOOTHINGS)
+    transfer: str = axis("flip", "Transfer between particles and grid.", TRANSFERS)
+    deformation: str = axis("exponential", "Update of F: exponential, or linear as printed.")
+    limit: float = axis(0.5, "Longest half diagonal of a CPDI domain, in cells; inf for none.")
+    void: bool = axis(True, "Void-strain memory of the constitutive model.")
+    courant: float = axis(0.4, "dt c / dx, c the compression wave of the constitutive model.")
+    duration: float = axis(1.4, "Seconds.")
+    start: Start = axis("none", "Stress at first: none, k0 or oedometric.")
+    left: Wall = axis("roller", "The wall: roller or fixed (nothing slips).")
+    gate: float = axis(inf, "Speed at which the gate is lifted, m/s; inf: gone at once.")
+    stops: bool = axis(True, "Walls hand their reaction on to the particles.")
+    offset: tuple[float, float] = axis((0.0, 0.0), "Shift of the particles, in fractions of their spacing.")
+    mirror: bool = axis(False, "Wall to the right.")
+    width: float = axis(0.0905, "Width of the column, m.")
+    aspect: float = axis(7.0, "Height over width.")
+    channel: float = axis(18.0, "Length of the channel, in widths.")
+    g: float = axis(10.0, "Gravity, m/s2; the paper has 10.")
+    case: ClassVar[str] = "column"
 
     def __post_init__(self) -> None:
-        per_side(self.ppc)
+        if self.ppc < 1 or isqrt(self.ppc) ** 2 != self.ppc:
+            raise ValueError(f"{self.ppc} particles per cell is no square number; choose from 1, 4, 9, 16, ...")
         if not 2 <= self.cells <= MOST:
             raise ValueError(f"cells = {self.cells} of the width must be 2 or more, and at most {MOST}")
         for name in ("courant", "duration", "gate", "limit", "width", "aspect", "g"):
@@ -101,8 +101,18 @@ class ColumnRun:
     @property
     def cost(self) -> float:
         """Particle updates, roughly: what a run takes grows with it. UBCSAND is stiffer, and slower."""
-        stiff = 3.0 if self.law.startswith("ubcsand") else 1.0
+        stiff = 3.0 if self.material.startswith("ubcsand") else 1.0
         return 230.0 * stiff * self.aspect * self.ppc * self.cells**3 * self.duration / self.courant
+
+    @property
+    def particles(self) -> int:
+        """Those of the column."""
+        return round(self.aspect * self.cells**2 * self.ppc)
+
+    @property
+    def nodes(self) -> int:
+        """Those of the channel, one column's width above the column too."""
+        return round((self.channel * self.cells + 1) * ((self.aspect + 1) * self.cells + 1))
 
     def __str__(self) -> str:
         parts = [f"{self.method} {self.cells} cells wide, {self.ppc} per cell"]
@@ -112,48 +122,15 @@ class ColumnRun:
     @property
     def digest(self) -> str:
         """Name of the Result: hash of the parameters and of the sources, 16 hex digits. No damping is of no kind."""
-        same = asdict(self) | ({} if self.damping else {"damping_kind": "local"})
+        same = {"case": self.case} | asdict(self) | ({} if self.damping else {"damping_kind": "local"})
         return hashlib.sha256((json.dumps(same, sort_keys=True) + sources_digest()).encode()).hexdigest()[:16]
 
 
-@dataclass(frozen=True)
-class ColumnResult:
+@dataclass(frozen=True, kw_only=True)
+class ColumnResult(ResultRecord[ColumnRun]):
     """What a ColumnRun gave. `values`: final numbers, see cases/column/measure.py; curves are in the arrays."""
 
     run: ColumnRun
-    digest: str
-    status: Status
-    values: dict[str, float]
-    steps: int
-    particles: int
-    dt: float
-    wall_s: float
-    cpu_s: float
-    peak_memory_mb: float
-    failure: Failure | None = None
-    environment: dict[str, str] = field(default_factory=dict)
-    parameters: dict[str, float | str] = field(default_factory=dict)  # of the law, the defaults too
-    format: int = FORMAT
-
-    @property
-    def updates(self) -> int:
-        """Particle updates: particles times steps."""
-        return self.particles * self.steps
 
 
-@dataclass(frozen=True)
-class ColumnStudy:
-    """The runs of a sweep; `axes`: names of the fields that it varies; `words`: what the study is for, by its file.
-
-    `finish`: how many runs must come to rest, declared before any runs; a study of what fails asks for fewer.
-    """
-
-    name: str
-    title: str
-    command: str
-    runs: tuple[ColumnRun, ...]
-    axes: tuple[str, ...] = ()
-    words: tuple[str, ...] = ()
-    finish: int = 0
-    case: str = "column"
-    format: int = FORMAT
+ColumnStudy = Study[ColumnRun]

@@ -8,14 +8,17 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import exp, log, sqrt
 from statistics import median
+from typing import Any
 
 import numpy as np
 
-from mpm_verify.cases.harness.series import Series, collect
-from mpm_verify.cases.harness.study import Result, Run
+from mpm_verify.cases.harness.refinement import Series, collect
+from mpm_verify.cases.harness.study import Head, ResultRecord, head, without
 from mpm_verify.cases.judging.fit import Fit
 from mpm_verify.solver.failure import Failure, FailureKind
 
+Run = Any  # of any case with refinements
+Result = ResultRecord[Any]
 Results = Mapping[str, Result]
 UNDONE = Failure(FailureKind.NOT_RUN, step=-1)
 
@@ -92,11 +95,11 @@ def time_axes(runs: Sequence[Run], results: Results, quantity: str = "u", norm: 
 
 def particle_axes(runs: Sequence[Run], results: Results, quantity: str = "u", norm: str = "rms") -> list[ParticleAxis]:
     """One a method, solution and cell count that finished with two particle counts or more."""
-    points: dict[tuple[str, str, int], list[tuple[Run, float]]] = {}
+    points: dict[tuple[Head, int], list[tuple[Run, float]]] = {}
     for series in collect(runs):
         for run, errors in zip(series.runs, replicated(series, results, quantity, norm), strict=True):
             if errors:
-                points.setdefault((run.method, run.solution, run.cells), []).append((run, middle(errors)))
+                points.setdefault((without("ppc", head(run)), run.cells), []).append((run, middle(errors)))
     return [
         ParticleAxis(found[0][0], tuple(run.ppc for run, _ in found), tuple(e for _, e in found))
         for found in points.values()

@@ -9,11 +9,11 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
-from importlib import import_module
 from multiprocessing.queues import SimpleQueue as Queue
 from pathlib import Path
 from typing import Any, ClassVar, TypeVar
 
+from mpm_verify.cases.harness.case import case_named
 from mpm_verify.cases.harness.store import Store, StoreError
 
 T = TypeVar("T")
@@ -23,7 +23,11 @@ Study = Any
 
 
 class RunnerError(Exception):
-    """The runs cannot go on, for a reason outside them; one line."""
+    """The runs cannot go on, for a reason outside them; one line. `defect` says that the reason is in this program."""
+
+    def __init__(self, message: str, defect: bool = False) -> None:
+        super().__init__(message)
+        self.defect = defect
 
 
 def cost(run: Run) -> float:
@@ -42,7 +46,7 @@ def perform(run: Run, folder: Path, threads: int) -> Result:
     from mpm_verify.solver._jit import use_threads
 
     use_threads(threads)
-    result, arrays = import_module(f"mpm_verify.cases.{run.case}.case").execute(run, Ticker(run.digest))
+    result, arrays = case_named(run.case).execute(run, Ticker(run.digest))
     Store(folder, run.case).put(result, arrays)
     return result
 
@@ -99,7 +103,7 @@ def run_study(
         raise RunnerError("not enough memory; try --jobs 1 or fewer cells; stored runs are kept") from error
     if lost:
         (run, defect), more = lost[0], f", and in {len(lost) - 1} more" if lost[1:] else ""
-        raise RunnerError(f"a defect of verify in {run}{more}: {defect!r}; the other runs are stored") from defect
+        raise RunnerError(f"a defect of verify in {run}{more}: {defect!r}; the other runs are stored", True) from defect
     return stored(study, store)
 
 

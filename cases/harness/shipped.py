@@ -1,17 +1,28 @@
-"""Studies of the column that ship: by file names, so that nothing heavy is imported to list or complete them."""
+"""Studies that ship: by file names, so that nothing heavy is imported to list or complete them."""
 
 import tomllib
+from pathlib import Path
+from typing import Any
 
-from mpm_verify.solver.sources import TOP
+from mpm_verify.solver.plugins import CASES, folder
 
-STUDIES = TOP / "cases" / "column" / "studies"
+
+def files() -> dict[str, Path]:
+    """File of each study by its name."""
+    return {file.stem: file for file in sorted(folder(CASES).glob("*/studies/*.toml"), key=lambda file: file.stem)}
 
 
 def shipped() -> list[str]:
     """Their names."""
-    return sorted(file.stem for file in STUDIES.glob("*.toml"))
+    return list(files())
+
+
+def where(study: str) -> Path:
+    """File of a study that ships."""
+    return files()[study]
 
 
 def title(study: str) -> str:
     """What a study calls itself."""
-    return str(tomllib.loads((STUDIES / f"{study}.toml").read_text(encoding="utf-8"))["title"])
+    content: dict[str, Any] = tomllib.loads(where(study).read_text(encoding="utf-8"))
+    return str(content["title"])

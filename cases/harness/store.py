@@ -2,8 +2,7 @@
 
 DIR/study.json           the Study
 DIR/runs/<digest>.json   a Result
-DIR/runs/<digest>.npz    its arrays, float32. Of mms the particles at the last step: X, x (P,2), F (P,2,2), corners
-                         (P,4,2), error_u (P,); of column see cases/column/case.py
+DIR/runs/<digest>.npz    its arrays, see the case
 """
 
 import fcntl
@@ -22,11 +21,13 @@ from zipfile import BadZipFile
 import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
-from mpm_verify.cases.harness.kinds import kind
+from mpm_verify.cases.harness.case import adapters
 from mpm_verify.cases.harness.study import FORMAT
+from mpm_verify.solver.plugins import CASES, available
 
-Arrays = dict[str, "np.ndarray[Any, np.dtype[np.float32]]"]
+Arrays = dict[str, "np.ndarray[Any, np.dtype[Any]]"]
 HOUR = 3600.0
+BROKEN = "{} is broken and was left as it is; move it away, and what it held is made again"
 
 
 class StoreError(Exception):
@@ -44,12 +45,19 @@ def make(folder: Path) -> None:
 
 
 def case_of(folder: Path) -> str:
-    """The case of the study that a folder holds; mms where there is nothing that says so."""
+    """The case of the study that a folder holds. Raises StoreError where there is nothing that says so."""
+    path = folder / "study.json"
     try:
-        data = json.loads((folder / "study.json").read_bytes())
-        return str(data.get("case", "mms")) if isinstance(data, dict) else "mms"
-    except (OSError, ValueError):
-        return "mms"
+        data = json.loads(path.read_bytes())
+        case = data.get("case") if isinstance(data, dict) else None
+    except FileNotFoundError as error:
+        raise StoreError(f"{folder} is no study folder: it holds no study.json") from error
+    except (OSError, ValueError, RecursionError) as error:
+        raise StoreError(BROKEN.format(path)) from error
+    if case not in available(CASES):
+        known = ", ".join(available(CASES))
+        raise StoreError(f"{path} is of the case {case}, and this version has {known}; use another --out folder")
+    return str(case)
 
 
 class Store:
@@ -68,11 +76,13 @@ class Store:
                     leftover.unlink()
         if (self.folder / "study.json").exists():
             self.study()
-        self.write(self.folder / "study.json", json.dumps(asdict(study), indent=1).encode())
+        elif (self.folder / "report.html").exists():
+            raise StoreError(f"{self.folder} holds a page of something else; give another --out folder")
+        self.write(self.folder / "study.json", self._text(study))
 
     def study(self) -> Any:
         """The study of this folder."""
-        return self._read(self.folder / "study.json", kind(self.case).study)
+        return self._read(self.folder / "study.json", adapters(self.case)[0])
 
     def put(self, result: Any, arrays: Arrays) -> None:
         """Write arrays, then the Result: the JSON file is what makes a run stored."""
@@ -80,12 +90,16 @@ class Store:
         buffer = io.BytesIO()
         np.savez(buffer, allow_pickle=False, **arrays)
         self.write(path.with_suffix(".npz"), buffer.getvalue())
-        self.write(path.with_suffix(".json"), json.dumps(asdict(result), indent=1).encode())
+        self.write(path.with_suffix(".json"), self._text(result))
+
+    def _text(self, record: Any) -> bytes:
+        """A record as it is stored, with the case that it is of."""
+        return json.dumps({"case": self.case} | asdict(record), indent=1).encode()
 
     def get(self, digest: str) -> Any:
         """The stored Result of that name, None if the run is still to be done."""
         path = self.runs / f"{digest}.json"
-        return self._read(path, kind(self.case).result) if path.exists() else None
+        return self._read(path, adapters(self.case)[1]) if path.exists() else None
 
     def arrays(self, digest: str) -> Arrays:
         """The arrays of that run."""
@@ -101,19 +115,19 @@ class Store:
     def _read(self, path: Path, adapter: TypeAdapter[Any]) -> Any:
         try:
             data = json.loads(path.read_bytes())
-            if data.get("format") == FORMAT and data.get("case", data.get("run", {}).get("case", "mms")) != self.case:
-                raise StoreError(f"{path.parent} holds another case than {self.case}; use another --out folder")
             if data.get("format") != FORMAT:
                 raise StoreError(
                     f"{path} has format {data.get('format')}, this version reads {FORMAT}; use another --out folder"
+                )
+            if data.get("case") != self.case:
+                raise StoreError(
+                    f"{path.parent} holds the case {data.get('case')}, not {self.case}; use another --out folder"
                 )
             return adapter.validate_python(data)
         except FileNotFoundError as error:
             raise StoreError(f"{path.parent} is no study folder: it holds no {path.name}") from error
         except (OSError, ValueError, AttributeError, RecursionError, ValidationError) as error:
-            raise StoreError(
-                f"{path} is broken and was left as it is; move it away, and what it held is made again"
-            ) from error
+            raise StoreError(BROKEN.format(path)) from error
 
     @contextmanager
     def locked(self) -> Iterator[None]:

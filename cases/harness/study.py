@@ -1,127 +1,97 @@
-"""What is run and what is expected of it: Run, Result and Study, data that the store writes and the report reads."""
+"""What is run and what is expected of it: the records that every case has, written by the store and read by reports.
 
-import hashlib
-import json
-from dataclasses import asdict, dataclass, field
-from functools import cache
+A case adds its own fields: its Run is a frozen dataclass below RunRecord whose fields are the axes that a study can
+have, its Result one below ResultRecord (see cases/harness/case.py).
+"""
+
+from dataclasses import asdict, dataclass, field, fields
 from math import inf
-from typing import Literal
+from typing import Any, ClassVar, Generic, Literal, TypeVar
 
 from mpm_verify.cases.judging.records import Expectation
-from mpm_verify.mms.blind_spots import BlindSpot
 from mpm_verify.solver.failure import Failure
-from mpm_verify.solver.plugins import identity
-from mpm_verify.solver.sources import TOP, digest
 
 FORMAT = 2  # of study.json and of every Result; a reader refuses another number
-QUANTITIES = ("u", "v", "F", "sigma")
-NORMS = ("rms", "max", "final", "printed")
+REFINED = ("cells", "courant", "offset")  # fields in which the runs of one refinement differ
 Status = Literal["finished", "failed"]
+Head = tuple[tuple[str, Any], ...]  # names and values of all other fields of a Run: what a refinement is of
 
 
-@cache
-def sources_digest() -> str:
-    """Hash of every source that a stored number depends on: the solver, the derivation, the norms and the cases."""
-    files = [
-        *TOP.glob("solver/**/*.py"),
-        *TOP.glob("mms/**/*.py"),
-        *(TOP / f"cases/mms/{name}.py" for name in ("case", "norms", "gaps", "packing")),
-        TOP / "cases/harness/memory.py",
-    ]
-    return digest(files)
+def axis(default: Any, text: str, plugins: str = "") -> Any:
+    """A field of a Run: its default, what it is (help of its option), and the package whose plug-ins it names."""
+    return field(default=default, metadata={"help": text, "plugins": plugins})
 
 
 @dataclass(frozen=True)
-class Run:
-    """One frozen point of a sweep; its digest is its name.
+class RunRecord:
+    """One point of a study. A subclass says in `cost` what it takes and in `particles` how many there are."""
 
-    `solution`, `material` and `transfer` are specifications: a name, or a name with parameters
-    (`axis_aligned:A=0.01,phase=0.5`); `stress` is a word of solver/stress_update.py.
-    `courant` is C dt / dx, with C the reference speed of the solution. `offset` shifts the particles in their cells, by
-    shares of their spacing, or, of a body without walls, the grid by shares of a cell; `layout` is how they are spread.
-    """
+    case: ClassVar[str]
 
-    method: str
-    solution: str
-    material: str
-    cells: int
-    ppc: int
-    courant: float
-    transfer: str = "flip"
-    stress: str = "usl"
-    staggered: bool = True
-    force: bool = False
-    case: str = "mms"
-    offset: tuple[float, float] = (0.0, 0.0)
-    layout: str = "uniform"
-
-    def __post_init__(self) -> None:
-        if self.cells < 1 or self.ppc < 1 or not 0 < self.courant < inf:
-            raise ValueError(f"no run: cells = {self.cells}, ppc = {self.ppc}, courant = {self.courant}")
+    @property
+    def digest(self) -> str:
+        """Name of the Result: hash of the parameters and of the sources that compute, 16 hex digits."""
+        raise NotImplementedError
 
     @property
     def cost(self) -> float:
         """Particle updates, up to a factor: what a run takes grows with it."""
-        return self.cells**3 * self.ppc / self.courant
-
-    def __str__(self) -> str:
-        return f"{self.method} {self.cells}² cells, {self.ppc} per cell"
+        return 1.0
 
     @property
-    def digest(self) -> str:
-        """Name of the Result: hash of the parameters and of the sources, 16 hex digits."""
-        return _digest(self, sources_digest())
+    def updates(self) -> float:
+        """Particle updates, as near as they are known before the run."""
+        return self.cost
+
+    @property
+    def particles(self) -> int:
+        """Number of particles, as near as it is known before the run."""
+        return 1
+
+    @property
+    def nodes(self) -> int:
+        """Number of grid nodes, as near as it is known before the run."""
+        return 1
 
 
-@cache
-def _digest(run: Run, sources: str) -> str:
-    text = json.dumps({**asdict(run), "solution": identity(run.solution)}, sort_keys=True) + sources
-    return hashlib.sha256(text.encode()).hexdigest()[:16]
+R = TypeVar("R", bound=RunRecord)
 
 
-@dataclass(frozen=True)
-class Packed:
-    """How well particles were packed. `fewest` in a cell that the body filled, over the run, and such a cell.
+@dataclass(frozen=True, kw_only=True)
+class ResultRecord(Generic[R]):
+    """What one Run gave, in the units of the problem.
 
-    None where the body never filled one. `widest` is the largest side of a domain at first, in cells, and `steepest`
-    the largest ratio of the volumes of two neighbours.
+    `errors[quantity][norm]` are judged by the order rule, `values` are other numbers of the run. `scale` is the rms of
+    each exact quantity, `floor` its round-off floor. `cpu_s` is the processor time of the steps, all threads, with body
+    force and norms; `crossings` are the faces of cells that particles passed, `gap` is how far the corners of domains
+    are apart in spacings of particles (None where domains have none); `parameters` are those of the plug-ins.
+    Raises ValueError for errors of a finished run that are negative or not finite.
     """
 
-    fewest: int | None
-    cell: tuple[int, int] | None
-    widest: float
-    steepest: float
-
-
-@dataclass(frozen=True)
-class Result:
-    """What one Run gave. `errors[quantity][norm]`; all in the units of the problem."""
-
-    run: Run
+    run: R
     digest: str
     status: Status
-    errors: dict[str, dict[str, float]]
-    steps: int
-    particles: int
-    dt: float
-    wall_s: float
-    peak_memory_mb: float
-    scale: dict[str, float] = field(default_factory=dict)  # rms of the exact quantity, to make errors relative
-    floor: dict[str, float] = field(default_factory=dict)  # round-off floor of the quantity
+    steps: int = 0
+    particles: int = 0
+    dt: float = 0.0
+    wall_s: float = 0.0
+    cpu_s: float = 0.0
+    peak_memory_mb: float = 0.0
+    errors: dict[str, dict[str, float]] = field(default_factory=dict)
+    values: dict[str, float] = field(default_factory=dict)
+    scale: dict[str, float] = field(default_factory=dict)
+    floor: dict[str, float] = field(default_factory=dict)
+    crossings: int = 0
+    gap: float | None = None
     failure: Failure | None = None
     environment: dict[str, str] = field(default_factory=dict)
-    crossings: int = 0  # faces of cells that particles passed
-    cpu_s: float = 0.0  # processor time of the steps, all threads, with body force and norms
-    gap: float | None = None  # see cases.mms.gaps.Gaps; None for methods that know points only
-    packed: Packed | None = None  # see cases.mms.packing.Packing; None where nobody looked
-    audit: tuple[BlindSpot, ...] = ()  # what a study of the solution cannot see, and what it can
-    parameters: dict[str, float] = field(default_factory=dict)  # of solution and material, the defaults too
+    parameters: dict[str, float | str] = field(default_factory=dict)
     format: int = FORMAT
 
     def __post_init__(self) -> None:
-        values = [self.errors.get(q, {}).get(n, inf) for q in QUANTITIES for n in NORMS]
+        values = [value for norms in self.errors.values() for value in norms.values()]
         if self.status == "finished" and not all(0 <= value < inf for value in values):
-            raise ValueError("a finished run has every error of every quantity, finite and not negative")
+            raise ValueError("a finished run has errors that are finite and not negative")
 
     @property
     def updates(self) -> int:
@@ -130,30 +100,55 @@ class Result:
 
 
 @dataclass(frozen=True)
-class QuantityPlan:
-    """A quantity the study judges, or only shows, with what is expected of it; declared before the study runs."""
+class QuantityPlan(Generic[R]):
+    """A quantity that the study judges, or only shows, with what is expected of it; declared before the study runs.
 
-    method: str
-    solution: str
-    ppc: int
+    `run` is any run of the refinement that it is measured on.
+    """
+
+    run: R
     quantity: str
     norm: str
     judged: bool
     expectation: Expectation | None
     multiple: int = 1  # of cells that fill the body of the solution
 
-    def __post_init__(self) -> None:
-        if self.quantity not in QUANTITIES or self.norm not in NORMS:
-            raise ValueError(f"no quantity {self.quantity!r} in norm {self.norm!r}")
+    @property
+    def head(self) -> Head:
+        """What the refinement is of."""
+        return head(self.run)
 
 
 @dataclass(frozen=True)
-class Study:
-    """The runs of one sweep and what is declared of them. `command` repeats it."""
+class Study(Generic[R]):
+    """The runs of a case and what is declared of them before they run. `command` repeats it.
+
+    `axes` are the fields that it varies, `words` what it is for, `finish` how many runs must come to their end, of a
+    case that counts them.
+    """
 
     name: str
     title: str
     command: str
-    runs: tuple[Run, ...]
-    plans: tuple[QuantityPlan, ...]
+    runs: tuple[R, ...]
+    plans: tuple[QuantityPlan[R], ...] = ()
+    axes: tuple[str, ...] = ()
+    words: tuple[str, ...] = ()
+    finish: int = 0
+    case: str = ""
     format: int = FORMAT
+
+
+def head(run: RunRecord) -> Head:
+    """All that names the refinement which a run belongs to."""
+    return tuple((item.name, getattr(run, item.name)) for item in fields(run) if item.name not in REFINED)
+
+
+def without(name: str, of: Head) -> Head:
+    """A head without one of its fields: refinements that differ in that field alone have the same."""
+    return tuple((key, value) for key, value in of if key != name)
+
+
+def parameters(kind: str, plugin: Any) -> dict[str, float | str]:
+    """Every parameter of a plug-in, the defaults too, each named after its kind."""
+    return {f"{kind} {key}": value for key, value in asdict(plugin).items()}

@@ -2,18 +2,20 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 from mpm_verify.cases.harness.axes import crossed, error, level, local, middle, replicated
-from mpm_verify.cases.harness.series import Head, Series, collect
-from mpm_verify.cases.harness.study import QuantityPlan, Result, Run, Study
-from mpm_verify.cases.judging.order import Expectation, Level, Outcome, Quantity, Verdict, judge, judge_family
+from mpm_verify.cases.harness.refinement import Series, collect
+from mpm_verify.cases.harness.study import Head, QuantityPlan, ResultRecord, Study, without
+from mpm_verify.cases.judging.order import Expectation, Level, Quantity, Verdict, judge, judge_family
 from mpm_verify.cases.judging.records import Ended
 from mpm_verify.cases.judging.stall import BELOW, USUAL, Measured, Peer, Stall, explain
 
-EXIT = {Outcome.PASS: 0, Outcome.FAIL: 1, Outcome.ERROR: 2, Outcome.INCONCLUSIVE: 3}
 NOTHING_EXPECTED = Expectation(order=None)  # only its slope is used
 STALLS = ("u", "rms")  # other quantities have orders of their own, which nobody has registered
 DOUBLE = 1.8
+Run = Any  # of any case with refinements
+Result = ResultRecord[Any]
 Results = Mapping[str, Result]
 
 
@@ -24,7 +26,7 @@ class Finding:
     `results` are those of the levels with the particles at their usual places, None for runs not done.
     """
 
-    plan: QuantityPlan
+    plan: QuantityPlan[Any]
     verdict: Verdict
     levels: tuple[Level, ...]  # coarse to fine
     finest: Result | None
@@ -37,10 +39,10 @@ class Finding:
         return tuple(crossed(result) for result in self.results)
 
 
-def findings(study: Study, results: Results) -> list[Finding]:
+def findings(study: Study[Any], results: Results) -> list[Finding]:
     """Findings in the order of the declarations; `results` by digest, those not there are runs not done."""
     known = {series.head: series for series in collect(study.runs)}
-    quantities = [_quantity(d, known.get(_head(d)), results) for d in study.plans]
+    quantities = [_quantity(d, known.get(d.head), results) for d in study.plans]
     judged = [i for i, d in enumerate(study.plans) if d.judged]
     verdicts = dict(zip(judged, judge_family([quantities[i] for i in judged]), strict=True))
     found = []
@@ -52,28 +54,18 @@ def findings(study: Study, results: Results) -> list[Finding]:
             dt_halved=quantity.dt_halved,
             multiple=quantity.multiple,
         )
-        series = known.get(_head(declared))
+        series = known.get(declared.head)
         done = tuple(results.get(run.digest) for run in series.runs) if series else ()
         found.append(Finding(declared, verdict, tuple(quantity.ordered), done[-1] if done else None, done))
     return _with_stalls(found, known, results)
 
 
-def exit_code(found: Sequence[Finding]) -> int:
-    """0 all pass, 1 a fail, 2 an error, 3 inconclusive or nothing judged; the worst decides (fail before error)."""
-    codes = {EXIT[f.verdict.outcome] for f in found if f.plan.judged}
-    return next((code for code in (1, 2, 3) if code in codes), 0 if codes else 3)
-
-
-def refinement(declared: QuantityPlan, runs: Sequence[Run]) -> list[Run]:
+def refinement(declared: QuantityPlan[Any], runs: Sequence[Run]) -> list[Run]:
     """The runs of a declared quantity at the Courant number of the study, coarse to fine, at their usual places."""
-    return next((list(series.runs) for series in collect(runs) if series.head == _head(declared)), [])
+    return next((list(series.runs) for series in collect(runs) if series.head == declared.head), [])
 
 
-def _head(declared: QuantityPlan) -> Head:
-    return declared.method, declared.solution, declared.ppc
-
-
-def _quantity(declared: QuantityPlan, series: Series | None, results: Results) -> Quantity:
+def _quantity(declared: QuantityPlan[Any], series: Series | None, results: Results) -> Quantity:
     """The levels of one declared quantity, and its error with half the time step on the finest level."""
     expectation = declared.expectation or NOTHING_EXPECTED
     if series is None:
@@ -89,9 +81,9 @@ def _quantity(declared: QuantityPlan, series: Series | None, results: Results) -
 def _with_stalls(found: Sequence[Finding], known: Mapping[Head, Series], results: Results) -> list[Finding]:
     """The findings, those of the displacement with the stall of their refinement."""
     displacements = [f for f in found if (f.plan.quantity, f.plan.norm) == STALLS and f.levels]
-    peers = {_head(f.plan): peer for f in displacements if (peer := _peer(f))}
-    stalls = {_head(f.plan): explain(_measured(f, known, results, peers)) for f in displacements}
-    return [replace(f, stall=stalls.get(_head(f.plan))) if f in displacements else f for f in found]
+    peers = {f.plan.head: peer for f in displacements if (peer := _peer(f))}
+    stalls = {f.plan.head: explain(_measured(f, known, results, peers)) for f in displacements}
+    return [replace(f, stall=stalls.get(f.plan.head)) if f in displacements else f for f in found]
 
 
 def _peer(found: Finding) -> Peer | None:
@@ -103,12 +95,12 @@ def _peer(found: Finding) -> Peer | None:
     finest = done[-1][1] if done else None
     if finest is None or not order or order[0] is None:
         return None
-    return Peer(found.plan.method, order[0], crossed(finest) or 0.0, finest.gap)
+    return Peer(found.plan.run.method, order[0], crossed(finest) or 0.0, finest.gap)
 
 
 def _measured(found: Finding, known: Mapping[Head, Series], results: Results, peers: Mapping[Head, Peer]) -> Measured:
     """The numbers that can tell why a refinement stalls."""
-    d, series = found.plan, known[_head(found.plan)]
+    d, series = found.plan, known[found.plan.head]
     done = doublings(found)
     cells = tuple(result.run.cells for _, result in done)
     ended = [
@@ -117,14 +109,15 @@ def _measured(found: Finding, known: Mapping[Head, Series], results: Results, pe
         if result and result.failure and cells and result.run.cells > cells[-1]
     ]
     order = d.expectation.order if d.expectation and d.expectation.order is not None else USUAL
-    others = [peer for key, peer in peers.items() if key[0] != d.method and key[1:] == (d.solution, d.ppc)]
+    mine = without("method", d.head)
+    others = [peer for key, peer in peers.items() if key != d.head and without("method", key) == mine]
     finest = bool(done) and done[-1][1].run == series.runs[-1]  # else the run with half the time step is of other cells
     return Measured(
         cells,
         tuple(middle(each.errors) for each, _ in done),
         tuple(crossed(result) or 0.0 for _, result in done),
         tuple(result.gap for _, result in done),
-        d.ppc,
+        d.run.ppc,
         max((result.floor.get(d.quantity, 0.0) for _, result in done), default=0.0),
         error(series.halved, results, *STALLS) if series.halved and finest else None,
         _other(series, known, results, cells),
@@ -148,10 +141,10 @@ def _other(
     series: Series, known: Mapping[Head, Series], results: Results, cells: Sequence[int]
 ) -> tuple[int, tuple[float, ...]] | None:
     """Errors of the two finest of `cells` with the next larger particle count, or else the next smaller one."""
-    method, solution, ppc = series.head
-    counts = [head[2] for head in known if head[:2] == (method, solution) and head[2] != ppc]
+    ppc, mine = series.first.ppc, without("ppc", series.head)
+    counts = {s.first.ppc: s for key, s in known.items() if key != series.head and without("ppc", key) == mine}
     for count in sorted(counts, key=lambda count: (count < ppc, abs(count - ppc))):
-        other = known[method, solution, count]
+        other = counts[count]
         levels = dict(zip((run.cells for run in other.runs), replicated(other, results, *STALLS), strict=True))
         if cells and levels.get(cells[-1]):
             return count, tuple(middle(levels[n]) for n in cells[-2:] if levels.get(n))

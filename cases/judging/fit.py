@@ -12,6 +12,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from mpm_verify.cases.judging.records import Contamination
+
 Array = NDArray[np.float64]
 
 STEADY = 0.15  # largest change of the local order from one level to the next in an asymptotic window
@@ -88,20 +90,6 @@ def _bootstrap(weight: Array, logs: Sequence[Array]) -> float:
         means = rng.choice(y, (RESAMPLES, r)).mean(axis=1)
         slopes += w * np.sqrt(r / (r - 1)) * means  # a bootstrap mean spreads by (r-1)/r too little: half at r = 2
     return float(slopes.std())
-
-
-@dataclass(frozen=True, slots=True)
-class Contamination:
-    """Shares of the finest error: lower-order term, floor, and the largest total that the data do not refute."""
-
-    lower: float
-    floor: float
-    most: float
-
-    @property
-    def total(self) -> float:
-        """Share of the finest error that is not of the expected order."""
-        return self.lower + self.floor
 
 
 def contamination(h: Array, error: Array, order: float, confidence: float, noise: float = 0.0) -> Contamination:

@@ -14,9 +14,10 @@ from functools import cached_property
 
 import numpy as np
 
-from mpm_verify.cases.judging.fit import Contamination, Fit, contamination
+from mpm_verify.cases.judging.fit import Fit, contamination
 from mpm_verify.cases.judging.records import (
     Action,
+    Contamination,
     Expectation,
     Level,
     Numbers,

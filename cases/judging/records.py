@@ -2,10 +2,8 @@
 
 from dataclasses import dataclass, field
 from enum import StrEnum
+from math import isfinite
 
-import numpy as np
-
-from mpm_verify.cases.judging.fit import Contamination
 from mpm_verify.solver.failure import Failure, FailureKind
 
 
@@ -85,7 +83,7 @@ class Level:
         """Why this level has no error to judge; None if it has one."""
         if self.failed:
             return Ended(self.h, self.failed, self.replicate)
-        if self.errors and np.isfinite(self.errors).all():
+        if self.errors and all(map(isfinite, self.errors)):
             return None
         kind = FailureKind.ERROR_NOT_FINITE if self.errors else FailureKind.NO_ERROR
         return Ended(self.h, Failure(kind, step=-1))
@@ -154,6 +152,20 @@ class Reason:
     numbers: Numbers = field(default_factory=dict, hash=False)
     failed: tuple[Ended, ...] = ()
     wanted: Wanted | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Contamination:
+    """Shares of the finest error: lower-order term, floor, and the largest total that the data do not refute."""
+
+    lower: float
+    floor: float
+    most: float
+
+    @property
+    def total(self) -> float:
+        """Share of the finest error that is not of the expected order."""
+        return self.lower + self.floor
 
 
 @dataclass(frozen=True)

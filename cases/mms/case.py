@@ -1,8 +1,11 @@
-"""The MMS convergence case: a manufactured solution run on one grid, with the errors of u, v, F and sigma."""
+"""The MMS convergence case: a manufactured solution run on one grid, with the errors of u, v, F and sigma.
+
+The contract of a case is told in cases/harness/case.py.
+"""
 
 import time
-from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import cache
 from math import ceil, sqrt
 from typing import Any
@@ -12,22 +15,84 @@ import numpy as np
 from mpm_verify.cases.harness.environment import environment
 from mpm_verify.cases.harness.memory import forget_peak, peak_memory
 from mpm_verify.cases.harness.store import Arrays
-from mpm_verify.cases.harness.study import QUANTITIES, Result, Run
+from mpm_verify.cases.harness.study import parameters
+from mpm_verify.cases.judging.records import Expectation
+from mpm_verify.cases.mms.expectations import JUDGED_QUANTITY, expected
 from mpm_verify.cases.mms.gaps import LOOKS, Gaps
 from mpm_verify.cases.mms.norms import Norms, compare, new_shares
 from mpm_verify.cases.mms.packing import Packing
+from mpm_verify.cases.mms.run import AXES, NORMS, QUANTITIES, QUICK, Result, Run
 from mpm_verify.mms.audit import audit
 from mpm_verify.mms.blind_spots import BlindSpot
+from mpm_verify.mms.energy import check_energy
 from mpm_verify.mms.manufacture import Manufactured, manufacture
 from mpm_verify.solver.boundary import box, moving
 from mpm_verify.solver.failure import Failure, FailureKind, RunFailed
 from mpm_verify.solver.layout import CENTRED, Layout, parallelograms
-from mpm_verify.solver.plugins import LAYOUTS, MATERIALS, METHODS, SOLUTIONS, TRANSFERS, create, load
+from mpm_verify.solver.plugins import LAYOUTS, MATERIALS, METHODS, SOLUTIONS, TRANSFERS, create, is_file, load
+from mpm_verify.solver.plugins import canonical as canonical_name
 from mpm_verify.solver.state import Floats, Grid, Particles
 from mpm_verify.solver.step import Model, Scheme, advance, check_time_step
+from mpm_verify.solver.stress_update import check_stress_update
 
+__all__ = ["AXES", "JUDGED", "NORMS", "QUANTITIES", "QUICK", "Result", "Run", "execute"]
+
+JUDGED = (JUDGED_QUANTITY,)
+SCHEME = {"transfer": "flip", "stress": "usl", "layout": "uniform"}  # of which expectations are registered
 PIECE = 4096  # particles
 COUNTED = 40_000  # particles: the outline of a uniform layout with more takes as long as the run's first steps
+
+
+def title(runs: Sequence[Run]) -> str:
+    """`CPDI and MPM against the manufactured solution axis_aligned`."""
+    methods, solutions = (tuple(dict.fromkeys(getattr(run, key) for run in runs)) for key in ("method", "solution"))
+    named = " and ".join(m.upper() for m in methods) if len(methods) < 4 else f"{len(methods)} methods"
+    several = "solutions" if len(solutions) > 1 else "solution"
+    return f"{named} against the manufactured {several} {', '.join(solutions)}"
+
+
+def canonical(values: dict[str, Any]) -> dict[str, Any]:
+    """Specifications with only the parameters that differ from their defaults, and the solution's own material."""
+    solution = values["solution"] = canonical_name(SOLUTIONS, values.get("solution", Run.solution))
+    values["material"] = canonical_name(MATERIALS, values.get("material") or create(SOLUTIONS, solution).material)
+    values["transfer"] = canonical_name(TRANSFERS, values.get("transfer", Run.transfer))
+    values["layout"] = canonical_name(LAYOUTS, values.get("layout", Run.layout))
+    load(METHODS, values.get("method", Run.method).partition(":")[0])
+    check_stress_update(values.get("stress", Run.stress))
+    return values
+
+
+def check(runs: Sequence[Run]) -> None:
+    """Raises ValueError with one line for a solution, material or layout that cannot be run."""
+    cells: dict[tuple[str, str, str], set[int]] = {}
+    for run in runs:
+        cells.setdefault((run.solution, run.material, run.layout), set()).add(run.cells)
+    for (specification, model, layout), counts in cells.items():
+        solution, material = create(SOLUTIONS, specification), create(MATERIALS, model)
+        check_energy(material)
+        create(LAYOUTS, layout).check(solution)
+        if is_file(specification):
+            from mpm_verify.mms.check import check as check_solution  # derives the fields: some tenths of a second
+
+            check_solution(solution, material, tuple(sorted(counts)))
+
+
+def multiple(run: Run) -> int:
+    """Number of cells of the width whose multiples fill the body; 1 for those of this package, which are square."""
+    if not is_file(run.solution):
+        return 1
+    from mpm_verify.mms.check import sides  # see check
+
+    ratio = sides(create(SOLUTIONS, run.solution))
+    return ratio.denominator if ratio else 1
+
+
+def expectation(run: Run, quantity: str, norm: str) -> Expectation | None:
+    """What is registered: of the usual scheme alone; recorded errors hold for the usual time step and start."""
+    if any(getattr(run, name) != usual for name, usual in SCHEME.items()):
+        return None
+    usual = run.courant == Run.courant and run.staggered
+    return expected(run.method, run.solution, run.material, run.ppc, quantity, norm, usual)
 
 
 @dataclass
@@ -161,7 +226,8 @@ def execute(run: Run, tick: Callable[[float], None] = lambda share: None) -> tup
         floor={} if failure else round_off(scale, model),
         failure=failure,
         environment=environment(),
-        parameters={**parameters("solution", run.solution), **parameters("material", run.material)},
+        parameters=parameters("solution", create(SOLUTIONS, run.solution))
+        | parameters("material", create(MATERIALS, run.material)),
     )
     return result, arrays
 
@@ -210,9 +276,3 @@ def snapshot(run: Run, model: Model, comparison: Comparison) -> Arrays:
         for name, values in {"X": X, "x": x, "F": F, "corners": corners, "error_u": error}.items():
             arrays[name][place] = values
     return arrays
-
-
-def parameters(kind: str, specification: str) -> dict[str, Any]:
-    """Every parameter of a solution or material, the defaults too."""
-    package = {"solution": SOLUTIONS, "material": MATERIALS}[kind]
-    return {f"{kind} {key}": value for key, value in asdict(create(package, specification)).items()}

@@ -9,12 +9,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
-from mpm_verify.cases.harness.study import QUANTITIES
 from mpm_verify.cases.judging.records import Expectation
+from mpm_verify.cases.mms.run import QUANTITIES
 from mpm_verify.solver.failure import FailureKind
 from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS, create, is_file, split
 
-JUDGED = ("u", "rms")
+JUDGED_QUANTITY = ("u", "rms")
 JUDGED_PPC = (4, 9)
 SMALL = 1e-5
 STALL = 1.8  # the lower end of the band around order 2

@@ -9,10 +9,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import exp, log
+from typing import Any
 
-from mpm_verify.cases.harness.study import QuantityPlan, Result, Run, Study
-from mpm_verify.cases.mms.sweep import Sweep, build, canonical
-from mpm_verify.solver.plugins import LAYOUTS
+from mpm_verify.cases.harness.build import Asked, union
+from mpm_verify.cases.harness.study import Study
+from mpm_verify.cases.mms.run import Result, Run
 
 Results = Mapping[str, Result]
 Point = tuple[float, float]  # cost, error
@@ -30,7 +31,7 @@ class Plan:
     power: float = 0.25
 
 
-def build_graded(plan: Plan, command: str, name: str) -> Study:
+def build_graded(plan: Plan, command: str, name: str) -> Study[Any]:
     """The Study; nothing in it is judged. Raises ValueError, see Sweep.check and mms.grading.Grading.
 
     A contrast leaves ppc / contrast^2 particles in a cell where there is no strain: counts with less than one are not
@@ -39,22 +40,17 @@ def build_graded(plan: Plan, command: str, name: str) -> Study:
     dense = tuple(count for count in plan.ppc if count >= plan.contrast**2)
     if not dense:
         raise ValueError(f"a contrast of {plan.contrast:g} needs {plan.contrast**2:g} particles per cell or more")
-    spread = [
-        canonical(LAYOUTS, f"{kind}:contrast={plan.contrast},power={plan.power}") for kind in ("graded", "thinned")
-    ]
+    spread = [f"{kind}:contrast={plan.contrast},power={plan.power}" for kind in ("graded", "thinned")]
     parts = [
-        build(Sweep(plan.methods, solution, cells=plan.cells, ppc=ppc, layout=layout), command, name)
+        Asked("mms", {"method": plan.methods, "solution": (solution,), "cells": plan.cells, "ppc": ppc,
+                      "layout": (layout,)})
         for solution in plan.solutions
         for layout, ppc in (("uniform", plan.ppc), *((layout, dense) for layout in spread))
-    ]
-    runs = tuple(run for part in parts for run in part.runs if run.courant == Sweep.courant)
-    declared: dict[
-        object, QuantityPlan
-    ] = {}  # of the uniform layout, which comes first: the others have the same names
-    for d in (d for part in parts for d in part.plans):
-        declared.setdefault((d.method, d.solution, d.ppc, d.quantity, d.norm), replace(d, judged=False))
+    ]  # fmt: skip
     title = f"Uniform and graded layouts of particles on {' and '.join(plan.solutions)}"
-    return Study(name, title, command, runs, tuple(declared.values()))
+    study = union(parts, command, name, title)
+    runs = tuple(run for run in study.runs if run.courant == Run.courant)
+    return replace(study, runs=runs, plans=tuple(replace(one, judged=False) for one in study.plans))
 
 
 def kind(run: Run) -> str:

@@ -1,10 +1,11 @@
 """The study of all methods on the solutions that tell them apart: the MMS studies of each solution in one Study."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from typing import Any
 
+from mpm_verify.cases.harness.build import Asked, union
 from mpm_verify.cases.harness.study import Study
 from mpm_verify.cases.mms.expectations import REGISTERED
-from mpm_verify.cases.mms.sweep import Sweep, build
 from mpm_verify.solver.plugins import METHODS, available
 
 SQUARES = (12, 16, 24, 32, 48, 64, 96)
@@ -22,28 +23,18 @@ LEVELS: dict[str, tuple[int, ...]] = {
 }
 
 
-@dataclass(frozen=True)
-class Comparison:
-    """Methods, solutions and particles per cell to compare; `levels` gives the cells of each solution."""
-
-    methods: tuple[str, ...]
-    levels: dict[str, tuple[int, ...]]
-    ppc: tuple[int, ...] = (4,)
-
-
-def everything() -> Comparison:
-    """Every basis there is, on every solution of LEVELS; those of the registry first, in its order."""
+def every_method() -> list[str]:
+    """Every basis there is; those of the registry first, in its order."""
     known = [method for method in REGISTERED["axis_aligned"] if method in available(METHODS)]
-    return Comparison(tuple(dict.fromkeys([*known, *available(METHODS)])), LEVELS)
+    return list(dict.fromkeys([*known, *available(METHODS)]))
 
 
-def build_methods(comparison: Comparison, command: str, name: str) -> Study:
-    """One Study of all. Raises ValueError, see Sweep.check."""
+def build_methods(
+    methods: Sequence[str], levels: dict[str, tuple[int, ...]], ppc: Sequence[int], command: str, name: str
+) -> Study[Any]:
+    """One Study of these methods; `levels` gives the cells of each solution. Raises ValueError, see build.union."""
     parts = [
-        build(Sweep(comparison.methods, solution, cells=cells, ppc=comparison.ppc), command, name)
-        for solution, cells in comparison.levels.items()
+        Asked("mms", {"method": methods, "solution": (solution,), "cells": cells, "ppc": ppc})
+        for solution, cells in levels.items()
     ]
-    runs = tuple(run for part in parts for run in part.runs)
-    declared = tuple(d for part in parts for d in part.plans)
-    title = f"{len(comparison.methods)} methods on {', '.join(comparison.levels)}"
-    return Study(name, title, command, runs, declared)
+    return union(parts, command, name, f"{len(methods)} methods on {', '.join(levels)}")

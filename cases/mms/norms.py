@@ -16,7 +16,7 @@ from math import sqrt
 import numpy as np
 from numba import prange
 
-from mpm_verify.cases.harness.study import QUANTITIES
+from mpm_verify.cases.mms.run import QUANTITIES
 from mpm_verify.mms.exact import ROOM, Exact
 from mpm_verify.solver._jit import BLOCK, F1, F2, F3, i8, kernel, nothing
 from mpm_verify.solver.state import Floats, Particles

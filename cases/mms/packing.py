@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from mpm_verify.cases.harness.study import Packed
+from mpm_verify.cases.mms.run import Packed
 from mpm_verify.mms.manufacture import Manufactured
 from mpm_verify.solver.failure import FailureKind, RunFailed
 from mpm_verify.solver.layout import Layout, shared_corners

@@ -62,9 +62,7 @@ def _card(record: Record, found: Finding) -> Card:
     """One finding in words."""
     d, v, e = found.plan, found.verdict, found.plan.expectation
     diverges = e is not None and e.order is None
-    title = f"{words.series(d)}: {words.quantity(d.quantity)} in {d.norm}"
-    if len(record.solutions) > 1:
-        title += f", {d.solution}"
+    title = f"{record.label(d.run)}: {words.quantity(d.quantity)} in {d.norm}"
     facts = (
         ("Observed order", words.order(v.observed)),
         ("Interval", words.interval(v.interval)),
@@ -83,8 +81,8 @@ def _card(record: Record, found: Finding) -> Card:
         commands.command(record.study, found),
         plain,
         short(found),
-        audited.short(record, d.solution),
-        tuple(spot.sentence for spot in audited.seen(record, d.solution)),
+        audited.short(record, d.run.solution),
+        tuple(spot.sentence for spot in audited.seen(record, d.run.solution)),
     )
 
 
@@ -92,7 +90,7 @@ def divergence(record: Record, found: Finding) -> str:
     """Divergence said plainly, with the growth of rms against the fall of printed where both were measured."""
     d = found.plan
     series = record.series_of(d)
-    name = "Classical MPM" if d.method == "mpm" else words.method(d.method)
+    name = "Classical MPM" if d.run.method == "mpm" else words.method(d.run.method)
     claim = f"{name} diverges here with refinement"
     true, printed = record.errors(series, d.quantity, "rms"), record.errors(series, d.quantity, "printed")
     if len(true) < 2 or len(printed) < 2:

@@ -4,7 +4,7 @@ from itertools import pairwise
 from math import exp, log
 from typing import Any
 
-from mpm_verify.cases.harness.series import Series
+from mpm_verify.cases.harness.refinement import Series
 from mpm_verify.reports.figures.convergence import methods
 from mpm_verify.reports.frames import Record
 
@@ -25,7 +25,8 @@ def costs(record: Record) -> list[dict[str, Any]]:
         if results:
             last = results[-1]
             rows.append(
-                {"method": s.first.method, "solution": s.first.solution, "ppc": s.first.ppc, "cells": last.run.cells}
+                record.columns(s.first)
+                | {"cells": last.run.cells}
                 | {"relative_error": last.errors["u"]["rms"] / last.scale["u"], "updates": last.updates}
                 | {"cpu_s": last.cpu_s, "ns_per_update": 1e9 * last.cpu_s / max(1, last.updates)}
                 | {f"{kind}_at_{TARGET:g}": _at_target(record, s, kind) for kind in ("updates", "cpu_s")}

@@ -4,10 +4,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import chain, pairwise
 
-from mpm_verify.cases.harness.series import Series
-from mpm_verify.cases.harness.study import NORMS, QUANTITIES, QuantityPlan, Run
+from mpm_verify.cases.harness.refinement import Series
 from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.cases.judging.order import Outcome
+from mpm_verify.cases.mms.run import NORMS, QUANTITIES, Run
 from mpm_verify.reports.components import words
 from mpm_verify.reports.figures.local_orders import orders
 from mpm_verify.reports.frames import Record
@@ -71,7 +71,7 @@ def contamination(record: Record) -> Table:
         if shares is not None:
             name = f"{words.quantity(d.quantity)}, {d.norm}"
             share = (words.percent(s) for s in (shares.lower, shares.floor, shares.most))
-            rows.append((named(record, d), name, "judged" if d.judged else "shown only", *share))
+            rows.append((record.label(d.run), name, "judged" if d.judged else "shown only", *share))
     head = ("series", "quantity", "role", "lower order", "floor", "at most")
     return Table("Shares of the finest error that are not of the expected order", head, tuple(rows), heads=3)
 
@@ -87,9 +87,9 @@ def shown_verdicts(record: Record) -> Table:
 
 def _keys(record: Record, series: Series, role: str) -> list[tuple[str, str]]:
     """(quantity, norm) of that role, in the order of the contract."""
-    first, known = series.first, tables.roles(record)
+    known = tables.roles(record)
     every = [(q, n) for q in QUANTITIES for n in NORMS]
-    return [k for k in every if known.get((first.method, first.solution, first.ppc, *k), "shown") == role]
+    return [k for k in every if known.get((series.head, *k), "shown") == role]
 
 
 def _place(key: tuple[str, str]) -> tuple[int, int]:
@@ -100,11 +100,6 @@ def _cells(record: Record) -> list[int]:
     return sorted({run.cells for s in record.series for run in s.runs})
 
 
-def named(record: Record, of: Run | QuantityPlan) -> str:
-    """The series, with its solution where the study has more than one."""
-    return words.series(of) + (f", {of.solution}" if len(record.solutions) > 1 else "")
-
-
 def _errors(record: Record, caption: str, keys: Iterable[tuple[Series, str, str]]) -> Table:
     """A column a cell size."""
     cells, rows = _cells(record), []
@@ -112,7 +107,7 @@ def _errors(record: Record, caption: str, keys: Iterable[tuple[Series, str, str]
         means = dict(record.errors(s, quantity, norm))
         at = {run.cells: words.sci(means[run]) if run in means else _without(record, s, run) for run in s.runs}
         rows.append(
-            (named(record, s.first), f"{words.quantity(quantity)}, {norm}", *(at.get(n, words.DASH) for n in cells))
+            (record.label(s.first), f"{words.quantity(quantity)}, {norm}", *(at.get(n, words.DASH) for n in cells))
         )
     return Table(caption, ("series", "error of, in", *(words.cell_size(n) for n in cells)), tuple(rows), heads=2)
 
@@ -130,13 +125,9 @@ def _orders(record: Record, caption: str, keys: Iterable[tuple[Series, str, str]
     columns = list(pairwise(cells))
     for s, quantity, norm in keys:
         found = {(a, b): words.order(p) for a, b, p in orders(record, s, quantity, norm)}
-        first = s.first
-        fit = fitted.get((first.method, first.solution, first.ppc, quantity, norm), words.DASH)
-        steps = [
-            (found.get((a, b), words.DASH), words.few(passed.get((first.method, first.solution, first.ppc, b))))
-            for a, b in columns
-        ]
-        rows.append((named(record, first), f"{words.quantity(quantity)}, {norm}", *chain(*steps), fit))
+        fit = fitted.get((s.head, quantity, norm), words.DASH)
+        steps = [(found.get((a, b), words.DASH), words.few(passed.get((s.head, b)))) for a, b in columns]
+        rows.append((record.label(s.first), f"{words.quantity(quantity)}, {norm}", *chain(*steps), fit))
     pairs = [(f"{words.cell_size(a)} → {words.cell_size(b)}", "crossings") for a, b in columns]
     return Table(caption, ("series", "order of, in", *chain(*pairs), "fitted"), tuple(rows), heads=2)
 
@@ -148,7 +139,7 @@ def _shown(record: Record, found: Finding) -> Row:
         says += " (diverges, as expected)"
     name = f"{words.quantity(d.quantity)}, {d.norm}"
     return (
-        named(record, d),
+        record.label(d.run),
         name,
         words.order(v.observed),
         words.interval(v.interval),

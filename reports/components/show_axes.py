@@ -5,7 +5,7 @@ from itertools import pairwise
 from mpm_verify.cases.harness.axes import particle_axes, position_axes, time_axes
 from mpm_verify.cases.judging.fit import Fit
 from mpm_verify.reports.components import words
-from mpm_verify.reports.components.show import Table, named
+from mpm_verify.reports.components.show import Table
 from mpm_verify.reports.frames import Record
 
 CONFIDENCE = 0.95
@@ -22,7 +22,7 @@ def time_step(record: Record) -> Table:
         orders = dict(zip(pairwise(a.courants), a.orders, strict=True))
         cells = (words.sci(errors.get(courant)) for courant in courants)
         steps = (words.order(orders.get(pair)) for pair in pairs)
-        rows.append((named(record, a.run), words.cell_size(a.run.cells), *cells, *steps, words.percent(a.shares[0])))
+        rows.append((record.label(a.run), words.cell_size(a.run.cells), *cells, *steps, words.percent(a.shares[0])))
     head = [f"C = {courant:g}" for courant in courants] + [f"order {a:g} {ARROW} {b:g}" for a, b in pairs]
     return Table(
         "Error of u in rms against the Courant number C",
@@ -55,7 +55,7 @@ def scatter(record: Record) -> Table:
         for cells, errors, (low, mid, high) in zip(a.cells, a.errors, a.ends, strict=True):
             ratio = f"{high / low:.2f}" if low else words.DASH
             ends = (words.sci(e) for e in (errors[0], low, mid, high))
-            rows.append((named(record, a.run), words.cell_size(cells), str(len(errors)), *ends, ratio))
+            rows.append((record.label(a.run), words.cell_size(cells), str(len(errors)), *ends, ratio))
     head = ("series", "cell size", "runs", "usual place", "smallest", "median", "largest", "largest / smallest")
     return Table("Error of u in rms over the positions of the particles", head, tuple(rows), heads=2)
 
@@ -63,7 +63,7 @@ def scatter(record: Record) -> Table:
 def intervals(record: Record) -> Table:
     """The fitted order and its interval, from the usual places alone and from all replicates."""
     rows = [
-        (named(record, a.run), *_interval(a.alone), *_interval(a.together))
+        (record.label(a.run), *_interval(a.alone), *_interval(a.together))
         for a in position_axes(record.study.runs, record.results)
     ]
     head = ("series", "order, usual place", "95 % interval", "order, all places", "95 % interval of the scatter")

@@ -26,7 +26,7 @@ def figure_rows(record: Record) -> list[Row]:
 def overview(record: Record) -> Table:
     """The table for a paper: a row a method, a column a solution, the last local order of u and the relative error."""
     head = ("method", "per cell", *record.solutions)
-    found = {(f.plan.method, f.plan.ppc, f.plan.solution): f for f in record.findings if _is_u(f)}
+    found = {(f.plan.run.method, f.plan.run.ppc, f.plan.run.solution): f for f in record.findings if _is_u(f)}
     keys = list(dict.fromkeys((s.first.method, s.first.ppc) for s in record.series))
     rows = tuple(
         (words.method(m), str(ppc), *(_cell(record, found.get((m, ppc, s))) for s in record.solutions))

@@ -2,8 +2,8 @@
 
 from statistics import median
 
-from mpm_verify.cases.harness.study import Run
 from mpm_verify.cases.mms.graded import Bounded, Saving, kind, savings
+from mpm_verify.cases.mms.run import Run
 from mpm_verify.reports.components import words
 from mpm_verify.reports.components.show import Table
 from mpm_verify.reports.frames import Record

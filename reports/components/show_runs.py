@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import asdict
 
 from mpm_verify.cases.harness.axes import crossed
-from mpm_verify.cases.harness.study import Run
+from mpm_verify.cases.mms.run import Run
 from mpm_verify.reports.components import words
 from mpm_verify.reports.components.show import Row, Table
 from mpm_verify.reports.frames import Record

@@ -37,5 +37,5 @@ def looked(record: Record) -> bool:
 
 
 def _told(record: Record, found: Finding, stall: Stall) -> Told:
-    title = words.series(found.plan) + (f", {found.plan.solution}" if len(record.solutions) > 1 else "")
+    title = record.label(found.plan.run)
     return Told(title, sentences.where(stall), sentences.cause(stall), tuple(sentences.why(stall)))

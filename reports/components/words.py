@@ -1,8 +1,9 @@
 """How names, numbers and outcomes are written: one place, so that every table, figure and sentence says it alike."""
 
 import math
+from typing import Any
 
-from mpm_verify.cases.harness.study import QuantityPlan, Run
+from mpm_verify.cases.mms.run import Run
 
 METHODS = {
     "mpm": "MPM",
@@ -33,7 +34,7 @@ def quantity(name: str) -> str:
     return QUANTITIES.get(name, name)
 
 
-def series(of: Run | QuantityPlan) -> str:
+def series(of: Any) -> str:
     """Method and particle count: `CPDI, 4 per cell`."""
     return f"{method(of.method)}, {of.ppc} per cell"
 

@@ -1,15 +1,23 @@
 """What a study of the column leaves as files beside its page: numbers and curves as CSV, snapshots for ParaView."""
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 
 from mpm_verify.cases.column.claims import told
 from mpm_verify.cases.column.exam import ColumnAnalysis
 from mpm_verify.cases.column.exam import curves as read_curves
+from mpm_verify.cases.column.run import ColumnRun
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.reports.export.vtk import write_series
+from mpm_verify.reports.frames import joined
 from mpm_verify.reports.sentences import failures
+
+MEASURED = {  # measured numbers that have the name of a parameter: their names in tables
+    "damping": "damping_energy", "transfer": "transfer_energy", "void": "void_fraction", "courant": "courant_reached",
+}  # fmt: skip
 
 
 def tables(collapse: ColumnAnalysis, store: Store, folder: Path) -> None:
@@ -18,18 +26,32 @@ def tables(collapse: ColumnAnalysis, store: Store, folder: Path) -> None:
     for run in collapse.study.runs:
         result = collapse.results.get(run.digest)
         if result:
-            parameters = {name: getattr(run, name) for name in collapse.study.axes}
+            parameters = plain(run, collapse.study.axes)
             failure = failures.cause(result.failure) if result.failure else ""
-            rows.append(
-                {"digest": run.digest, **parameters, "status": result.status, "failure": failure, **result.values}
-            )
+            head = {"digest": run.digest, "status": result.status, "failure": failure}
+            rows.append(joined(head, parameters, measured(result.values)))
             columns = {name: values for name, values in read_curves(store, result).items() if values.ndim == 1}
-            curves.append(
-                pd.DataFrame({"digest": run.digest, **{n: told(n, getattr(run, n)) for n in parameters}, **columns})
-            )
+            words = {name: told(name, getattr(run, name)) for name in collapse.study.axes}
+            curves.append(pd.DataFrame(joined({"digest": run.digest}, words, measured(columns))))
     pd.DataFrame(rows).to_csv(folder / "runs.csv", index=False)
     if curves:
         pd.concat(curves).to_csv(folder / "curves.csv", index=False, float_format="%.7g")
+
+
+def plain(run: ColumnRun, axes: Sequence[str]) -> dict[str, Any]:
+    """The swept parameters of a run, by the names of its fields; a pair is two columns."""
+    found: dict[str, Any] = {}
+    for name in axes:
+        value = getattr(run, name)
+        found |= (
+            {f"{name}_{k}": v for k, v in zip("xy", value, strict=True)} if isinstance(value, tuple) else {name: value}
+        )
+    return found
+
+
+def measured(values: Mapping[str, Any]) -> dict[str, Any]:
+    """What was measured, by names that no parameter has."""
+    return {MEASURED.get(name, name): value for name, value in values.items()}
 
 
 def files(collapse: ColumnAnalysis, store: Store, folder: Path) -> None:

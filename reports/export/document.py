@@ -1,152 +1,295 @@
-"""The JSON document of --json. CI jobs read it: its shape changes only with VERSION, and schema.json says it."""
+"""The JSON document of --json, of every case. CI jobs read it: its shape changes only with VERSION.
+
+Each row of `runs` has the fields of the case's Run beside those of RunRow, each row of `verdicts` and `shown` those
+that name its refinement. `schema` derives the JSON schema from the records below and from the case's Run.
+"""
 
 import json
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
+from pydantic import TypeAdapter
+
 from mpm_verify.cases.harness.axes import particle_axes, position_axes, time_axes
-from mpm_verify.cases.harness.study import NORMS, QUANTITIES, Result, Run, Study
+from mpm_verify.cases.harness.case import case_named
+from mpm_verify.cases.harness.checks import Check
+from mpm_verify.cases.harness.study import ResultRecord
 from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.cases.judging.records import Ended
 from mpm_verify.cases.judging.stall import Cause, Stall
+from mpm_verify.reports.frames import Record, joined
 from mpm_verify.reports.sentences import commands, failures, stalls
 from mpm_verify.solver.failure import Failure
 
 VERSION = 3
-SCHEMA = Path(__file__).with_name("schema.json")
+Row = dict[str, Any]
 
 
-def document(study: Study, found: Sequence[Finding], results: Mapping[str, Result], report: Path) -> str:
-    """The document as text."""
+@dataclass(frozen=True)
+class FailureRow:
+    """Why a run could not go on; `particle` is -1 where none has to do with it."""
+
+    kind: str
+    step: int
+    particle: int
+    cell: list[int] | None
+    numbers: dict[str, float | None]
+
+
+@dataclass(frozen=True)
+class EndedRow:
+    """A level without an error."""
+
+    h: float
+    replicate: int
+    failure: FailureRow
+
+
+@dataclass(frozen=True)
+class CauseRow:
+    """What was weighed as the cause of a stall; `weight` is the fraction of the excess that it explains."""
+
+    code: str
+    name: str
+    finding: str
+    weight: float
+    numbers: dict[str, Any]
+    peer: str | None
+    measured: str
+
+
+@dataclass(frozen=True)
+class StallRow:
+    """Where an order falls; `order` on the finest pair of levels, `before` on the coarser ones."""
+
+    coarser: int | None
+    cells: int
+    where: str
+    order: float | None
+    before: list[float]
+    named: list[str]
+    causes: list[CauseRow]
+    ended: EndedRow | None
+
+
+@dataclass(frozen=True)
+class ShownRow:
+    """What is measured of a quantity; lists run over the levels, coarse to fine, null where there is none."""
+
+    quantity: str
+    norm: str
+    observed: float | None
+    interval: list[float] | None
+    local_orders: list[float]
+    crossings: list[float | None]
+    stall: StallRow | None
+
+
+@dataclass(frozen=True)
+class VerdictRow(ShownRow):
+    """A judged quantity; `expected` is an order, or a word such as diverges."""
+
+    expected: float | str | None
+    verdict: str
+    code: str
+    numbers: dict[str, Any]
+    failed: list[EndedRow]
+    wanted: dict[str, Any] | None
+    reason: str
+
+
+@dataclass(frozen=True)
+class CheckRow:
+    """A number beside what it is held against; null for a number that is not finite."""
+
+    group: str
+    name: str
+    found: float | None
+    expected: float | None
+    way: str
+    within: float | None
+    source: str
+    outcome: str
+
+
+@dataclass(frozen=True)
+class RunRow:
+    """How a run ended; `errors` by quantity and norm, null of a failed run."""
+
+    digest: str
+    status: str
+    failure: FailureRow | None
+    reason: str
+    errors: dict[str, dict[str, float]] | None
+    values: dict[str, float | None]
+    steps: int
+    particles: int
+    crossings: int
+    gap: float | None
+    wall_s: float
+
+
+@dataclass(frozen=True)
+class Document:
+    """A study: `axes` are u in rms along the axes beside the cells; `more` is what the case adds."""
+
+    version: int
+    case: str
+    study: str
+    title: str
+    outcome: str
+    exit_code: int
+    verdicts: list[VerdictRow]
+    shown: list[ShownRow]
+    axes: dict[str, list[dict[str, Any]]]
+    checks: list[CheckRow]
+    runs: list[RunRow]
+    more: dict[str, Any]
+    report: str | None
+
+
+def document(record: Record, page: Path | None, more: Row) -> str:
+    """The document as text; `page` is None where none is drawn."""
+    study, found = record.study, record.analysis
     content = {
         "version": VERSION,
+        "case": study.case,
         "study": study.name,
-        "verdicts": [verdict(study, f) for f in found if f.plan.judged],
-        "shown": [shown(f) for f in found if not f.plan.judged],
-        "axes": axes(study.runs, results),
-        "runs": [row(results[run.digest]) for run in study.runs if run.digest in results],
-        "report": str(report),
+        "title": study.title,
+        "outcome": str(found.outcome),
+        "exit_code": found.exit_code,
+        "verdicts": [verdict(record, f) for f in found.findings if f.plan.judged],
+        "shown": [shown(record, f) for f in found.findings if not f.plan.judged],
+        "axes": axes(record),
+        "checks": [asdict(check_row(check)) for check in found.checks],
+        "runs": [run_row(record.results[run.digest]) for run in study.runs if run.digest in record.results],
+        "more": finite(more),
+        "report": str(page) if page else None,
     }
-    return json.dumps(content, indent=1, allow_nan=False)
+    return json.dumps(content, indent=1, allow_nan=False, ensure_ascii=False)
 
 
-def verdict(study: Study, finding: Finding) -> dict[str, Any]:
+def verdict(record: Record, finding: Finding) -> Row:
     """A judged quantity; `code`, `numbers`, `failed` and `wanted` are what `reason` says in words."""
-    expectation, r = finding.plan.expectation, finding.verdict.reason
+    study, expectation, r = record.study, finding.plan.expectation, finding.verdict.reason
     order = expectation.order if expectation else None
-    return {
-        **shown(finding),
+    order = expectation.order if expectation else None
+    row = {
         "expected": expectation.kind if expectation and order is None else order,
         "verdict": str(finding.verdict.outcome),
         "code": str(r.code),
-        "numbers": {name: list(n) if isinstance(n, tuple) else n for name, n in r.numbers.items()},
-        "failed": [ended(end) for end in r.failed],
+        "numbers": finite(r.numbers),
+        "failed": [asdict(ended(end)) for end in r.failed],
         "wanted": {**asdict(r.wanted), "command": commands.command(study, finding)} if r.wanted else None,
         "reason": commands.reason(study, finding),
     }
+    return joined(shown(record, finding), row)
 
 
-def shown(finding: Finding) -> dict[str, Any]:
+def shown(record: Record, finding: Finding) -> Row:
     """What is measured of a quantity, judged or not."""
-    d, v = finding.plan, finding.verdict
-    return {
-        "method": d.method,
-        "solution": d.solution,
-        "ppc": d.ppc,
-        "quantity": d.quantity,
-        "norm": d.norm,
-        "observed": v.observed,
-        "interval": None if v.interval is None else list(v.interval),
-        "local_orders": list(v.local_orders),
-        "crossings": list(finding.crossings),
-        "stall": stall(finding.stall) if finding.stall else None,
-    }
+    plan, v = finding.plan, finding.verdict
+    row = ShownRow(
+        plan.quantity, plan.norm, v.observed, None if v.interval is None else list(v.interval), list(v.local_orders),
+        list(finding.crossings), stall(finding.stall) if finding.stall else None,
+    )  # fmt: skip
+    return joined(record.columns(plan.run), asdict(row))
 
 
-def stall(found: Stall) -> dict[str, Any]:
+def stall(found: Stall) -> StallRow:
     """Where an order falls, and the causes that were weighed, the weightiest first."""
-    return {
-        "coarser": found.coarser,
-        "cells": found.cells,
-        "where": stalls.where(found),
-        "order": found.order,
-        "before": list(found.before),
-        "named": [str(cause.code) for cause in found.named],
-        "causes": [cause(each) for each in found.causes],
-        "ended": ended(found.ended) if found.ended else None,
-    }
+    causes = [cause(each) for each in found.causes]
+    return StallRow(
+        found.coarser, found.cells, stalls.where(found), found.order, list(found.before),
+        [str(each.code) for each in found.named], causes, ended(found.ended) if found.ended else None,
+    )  # fmt: skip
 
 
-def cause(found: Cause) -> dict[str, Any]:
+def cause(found: Cause) -> CauseRow:
     """A cause of a stall; `measured` says in words what its numbers are."""
-    return {
-        "code": str(found.code),
-        "name": stalls.name(found),
-        "finding": str(found.finding),
-        "weight": found.weight,
-        "numbers": found.numbers,
-        "peer": found.peer.method if found.peer else None,
-        "measured": stalls.measured(found),
-    }
+    return CauseRow(
+        str(found.code), stalls.name(found), str(found.finding), found.weight, finite(found.numbers),
+        found.peer.method if found.peer else None, stalls.measured(found),
+    )  # fmt: skip
 
 
-def ended(end: Ended) -> dict[str, Any]:
+def ended(end: Ended) -> EndedRow:
     """A level without an error."""
-    return {"h": end.h, "replicate": end.replicate, "failure": failure(end.failure)}
+    return EndedRow(end.h, end.replicate, failure(end.failure))
 
 
-def failure(found: Failure) -> dict[str, Any]:
+def failure(found: Failure) -> FailureRow:
     """What ended a run, as codes and numbers."""
-    return {**asdict(found), "cell": list(found.cell) if found.cell else None}
+    return FailureRow(str(found.kind), found.step, found.particle, list(found.cell) if found.cell else None,
+                      finite(found.numbers))  # fmt: skip
 
 
-def axes(runs: Sequence[Run], results: Mapping[str, Result]) -> dict[str, list[dict[str, Any]]]:
+def axes(record: Record) -> dict[str, list[Row]]:
     """u in rms along the axes beside the cells; an axis with one value is empty."""
+    runs, results = record.study.runs, record.results
+    if not record.study.plans:
+        return {"time": [], "particles": [], "position": []}
     times = [
-        {**point(a.run), "cells": a.run.cells, "courants": list(a.courants), "errors": list(a.errors)}
+        joined(record.columns(a.run), {"cells": a.run.cells, "courants": list(a.courants), "errors": list(a.errors)})
         | {"orders": list(a.orders), "shares": list(a.shares)}
         for a in time_axes(runs, results)
     ]
     particles = [
-        {"method": a.run.method, "solution": a.run.solution, "cells": a.run.cells, "ppc": list(a.ppc)}
-        | {"errors": list(a.errors), "orders": list(a.orders)}
+        {key: value for key, value in record.columns(a.run).items() if key != "ppc"}
+        | {"cells": a.run.cells, "ppc": list(a.ppc), "errors": list(a.errors), "orders": list(a.orders)}
         for a in particle_axes(runs, results)
     ]
     positions = [
-        {**point(a.run), "cells": list(a.cells), "errors": [list(errors) for errors in a.errors]}
+        joined(record.columns(a.run), {"cells": list(a.cells), "errors": [list(errors) for errors in a.errors]})
         for a in position_axes(runs, results)
     ]
     return {"time": times, "particles": particles, "position": positions}
 
 
-def point(run: Run) -> dict[str, Any]:
-    """What names a series."""
-    return {"method": run.method, "solution": run.solution, "ppc": run.ppc}
+def check_row(check: Check) -> CheckRow:
+    """A check with its outcome."""
+    found, expected, within = (x if isfinite(x) else None for x in (check.found, check.expected, check.within))
+    return CheckRow(
+        check.group, check.name, found, expected, check.way, within, check.source, str(check.outcome)
+    )  # fmt: skip
 
 
-def row(result: Result) -> dict[str, Any]:
-    """A run."""
-    run = result.run
-    return {
-        "method": run.method,
-        "solution": run.solution,
-        "material": run.material,
-        "cells": run.cells,
-        "ppc": run.ppc,
-        "courant": run.courant,
-        "transfer": run.transfer,
-        "stress": run.stress,
-        "layout": run.layout,
-        "offset": list(run.offset),
-        "status": result.status,
-        "failure": failure(result.failure) if result.failure else None,
-        "reason": failures.failure(result.failure) if result.failure else "",
-        "errors": {q: {n: result.errors[q][n] for n in NORMS} for q in QUANTITIES} if result.errors else None,
-        "steps": result.steps,
-        "particles": result.particles,
-        "crossings": result.crossings,
-        "gap": result.gap,
-        "wall_s": result.wall_s,
-    }
+def run_row(result: ResultRecord[Any]) -> Row:
+    """A run with all its parameters."""
+    row = RunRow(
+        result.digest, result.status, failure(result.failure) if result.failure else None,
+        failures.failure(result.failure) if result.failure else "", result.errors or None,
+        finite(result.values), result.steps, result.particles, result.crossings, result.gap, result.wall_s,
+    )  # fmt: skip
+    return joined(finite(asdict(result.run)), asdict(row))
+
+
+def finite(value: Any) -> Any:
+    """The same with null for numbers that are not finite: JSON has no word for them."""
+    if isinstance(value, dict):
+        return {key: finite(one) for key, one in value.items()}
+    if isinstance(value, list | tuple):
+        return [finite(one) for one in value]
+    return None if isinstance(value, float) and not isfinite(value) else value
+
+
+def schema(case: str) -> Row:
+    """JSON schema (draft 2020-12) of the document of a case. Raises ValueError for another name."""
+    fields = TypeAdapter(case_named(case).Run).json_schema(mode="serialization")["properties"]
+    whole = TypeAdapter(Document).json_schema(mode="serialization")
+    for name, definition in whole["$defs"].items():
+        definition["additionalProperties"] = False
+        if name in ("RunRow", "VerdictRow", "ShownRow"):
+            clash = definition["properties"].keys() & fields.keys()
+            if clash:
+                raise ValueError(f"the Run of {case} has the field {sorted(clash)[0]!r}, a name of {name}")
+            definition["properties"] |= {key: nullable(field) for key, field in fields.items()}
+    whole["properties"]["version"] = {"const": VERSION}
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema"} | whole | {"title": f"verify {case} --json"}
+
+
+def nullable(field: Row) -> Row:
+    """A field whose value may be no finite number, which JSON has no word for."""
+    return {"anyOf": [field, {"type": "null"}]} if field.get("type") == "number" else field

@@ -1,64 +1,67 @@
-"""The verdicts as JUnit XML, for CI servers: a test a judged quantity; what is not a PASS is a failure or an error."""
+"""Verdicts and checks as JUnit XML, for CI servers: a test each; what is not a PASS is a failure or an error."""
 
 import os
-from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
-from mpm_verify.cases.harness.checks import Examination
-from mpm_verify.cases.harness.study import Study
+from mpm_verify.cases.harness.checks import Check
 from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.cases.judging.records import Outcome
+from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences import commands, failures, stalls
 
 
-def check_junit(path: Path | None) -> None:
-    """Raise ValueError now, and not when all runs are done, where the file cannot be written."""
+def writable(path: Path | None, option: str) -> None:
+    """Raise ValueError now, and not when all runs are done, where a file cannot be written."""
     if path is None:
         return
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise ValueError(f"cannot write --junit {path}: {path.parent} is no folder that can be made") from error
+        raise ValueError(f"cannot write {option} {path}: {path.parent} is no folder that can be made") from error
     if path.is_dir() or not os.access(path.parent, os.W_OK):
-        raise ValueError(f"cannot write --junit {path}: name a file in a folder that can be written")
+        raise ValueError(f"cannot write {option} {path}: name a file in a folder that can be written")
 
 
-def write_junit(path: Path, study: Study, found: Sequence[Finding]) -> None:
-    """Write the file; OSError where it cannot be written."""
-    judged = [f for f in found if f.plan.judged]
-    suite = ElementTree.Element("testsuite", name=study.name, tests=str(len(judged)))
-    for finding in judged:
-        d, v = finding.plan, finding.verdict
-        name = f"{d.quantity} {d.norm}, {d.ppc} per cell"
-        case = ElementTree.SubElement(suite, "testcase", classname=f"{study.name}.{d.method}.{d.solution}", name=name)
-        said = commands.reason(study, finding)
-        if v.outcome is not Outcome.PASS:
-            kind = "error" if v.outcome is Outcome.ERROR else "failure"
-            ElementTree.SubElement(case, kind, type=str(v.outcome), message=said)
-        stall = [stalls.where(finding.stall) + ".", *stalls.reasons(finding.stall)] if finding.stall else []
-        ElementTree.SubElement(case, "system-out").text = "\n".join([said, *stall])
-    outcomes = [f.verdict.outcome for f in judged]
-    suite.set("errors", str(outcomes.count(Outcome.ERROR)))
-    suite.set("failures", str(outcomes.count(Outcome.FAIL) + outcomes.count(Outcome.INCONCLUSIVE)))
+def write_junit(path: Path, record: Record) -> None:
+    """Write the file; OSError where it cannot be written. Times are those of the runs, as stored."""
+    study, found = record.study, record.analysis
+    suite = ElementTree.Element("testsuite", name=study.name, tests=str(len(found.outcomes)))
+    for finding in (f for f in found.findings if f.plan.judged):
+        _verdict(suite, record, finding)
+    for check in found.checks:
+        _check(suite, study.name, check)
+    suite.set("errors", str(found.outcomes.count(Outcome.ERROR)))
+    suite.set("failures", str(found.outcomes.count(Outcome.FAIL) + found.outcomes.count(Outcome.INCONCLUSIVE)))
+    suite.set("time", f"{sum(result.wall_s for result in record.results.values()):.3f}")
     ElementTree.indent(suite)
     ElementTree.ElementTree(suite).write(path, encoding="utf-8", xml_declaration=True)
 
 
-def write_checks(path: Path, examination: Examination) -> None:
-    """The checks of an examination as JUnit XML; OSError where it cannot be written."""
-    checks = examination.checks
-    suite = ElementTree.Element("testsuite", name=examination.name, tests=str(len(checks)))
-    for check in checks:
-        case = ElementTree.SubElement(suite, "testcase", classname=f"{examination.name}.{check.group}", name=check.name)
-        if check.outcome is not Outcome.PASS:
-            kind = "error" if check.outcome is Outcome.ERROR else "failure"
-            message = f"{check.found:.8g}, expected {check.way} {check.expected:.8g}, {check.within:.3g}"
-            if check.failure:
-                message = failures.failure(check.failure)
-            ElementTree.SubElement(case, kind, type=str(check.outcome), message=message)
-    outcomes = [check.outcome for check in checks]
-    suite.set("errors", str(outcomes.count(Outcome.ERROR)))
-    suite.set("failures", str(outcomes.count(Outcome.FAIL)))
-    ElementTree.indent(suite)
-    ElementTree.ElementTree(suite).write(path, encoding="utf-8", xml_declaration=True)
+def _verdict(suite: Any, record: Record, finding: Finding) -> None:
+    """A judged quantity as a test; its time is that of its levels."""
+    plan, v = finding.plan, finding.verdict
+    names = [str(value) for key, value in record.columns(plan.run).items() if key != "ppc"]
+    case = ElementTree.SubElement(
+        suite, "testcase", classname=".".join([record.study.name, *names]),
+        name=f"{plan.quantity} {plan.norm}, {plan.run.ppc} per cell",
+        time=f"{sum(result.wall_s for result in finding.results if result):.3f}",
+    )  # fmt: skip
+    said = commands.reason(record.study, finding)
+    if v.outcome is not Outcome.PASS:
+        kind = "error" if v.outcome is Outcome.ERROR else "failure"
+        ElementTree.SubElement(case, kind, type=str(v.outcome), message=said)
+    stall = [stalls.where(finding.stall) + ".", *stalls.reasons(finding.stall)] if finding.stall else []
+    ElementTree.SubElement(case, "system-out").text = "\n".join([said, *stall])
+
+
+def _check(suite: Any, study: str, check: Check) -> None:
+    """A check as a test."""
+    case = ElementTree.SubElement(suite, "testcase", classname=f"{study}.{check.group}", name=check.name, time="0")
+    if check.outcome is not Outcome.PASS:
+        kind = "error" if check.outcome is Outcome.ERROR else "failure"
+        message = f"{check.found:.8g}, expected {check.way} {check.expected:.8g}, {check.within:.3g}"
+        if check.failure:
+            message = failures.failure(check.failure)
+        ElementTree.SubElement(case, kind, type=str(check.outcome), message=message)

@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
 from matplotlib.ticker import NullLocator
 
-from mpm_verify.cases.harness.series import Series
+from mpm_verify.cases.harness.refinement import Series
 from mpm_verify.reports.components import words
 from mpm_verify.reports.figures import style
 from mpm_verify.reports.frames import Record
@@ -24,7 +24,7 @@ TITLES = {"rms": "rms: what verdicts use", "printed": "printed: shown, never jud
 
 def convergence(record: Record, solution: str, quantity: str = "u") -> dict[str, Figure]:
     """The figures `figure1` (both panels, for a paper), `figure1_rms` and `figure1_printed` of one solution."""
-    series = [s for s in record.series if s.first.solution == solution]
+    series = [s for s in record.drawn if s.first.solution == solution]
     with rc_context(style.RC):
         figures = {"figure1": Figure(figsize=(10.0, 5.4), layout="constrained")}
         left, right = cast(Sequence[SubFigure], figures["figure1"].subfigures(1, 2))

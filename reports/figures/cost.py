@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from mpm_verify.cases.harness.study import Run
+from mpm_verify.cases.mms.run import Run
 from mpm_verify.reports.components import words
 from mpm_verify.reports.figures import style
 from mpm_verify.reports.frames import Record

@@ -12,7 +12,7 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator
 from numpy.typing import NDArray
 
 from mpm_verify.cases.harness.store import Arrays
-from mpm_verify.cases.harness.study import Run
+from mpm_verify.cases.mms.run import Run
 from mpm_verify.reports.components import words
 from mpm_verify.reports.figures import style
 from mpm_verify.reports.frames import Record
@@ -24,7 +24,7 @@ OUTLINED = 4096  # more domains than that are drawn without outlines: they would
 
 def choose(record: Record, method: str, solution: str, cells: int = CELLS, ppc: int = PPC) -> Run | None:
     """The finished run of a method nearest to that many cells, then particles per cell; None if none finished."""
-    runs = [run for s in record.series for run in s.runs if (run.method, run.solution) == (method, solution)]
+    runs = [run for s in record.drawn for run in s.runs if (run.method, run.solution) == (method, solution)]
     done = [run for run in runs if (r := record.result(run)) and r.status == "finished"]
     return min(done, key=lambda r: (abs(np.log2(r.cells / cells)), abs(r.ppc - ppc), r.cells, r.ppc), default=None)
 

@@ -8,7 +8,7 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from mpm_verify.cases.harness.series import Series
+from mpm_verify.cases.harness.refinement import Series
 from mpm_verify.cases.judging.fit import local_orders
 from mpm_verify.reports.components import words
 from mpm_verify.reports.figures import style
@@ -28,7 +28,7 @@ def orders(record: Record, series: Series, quantity: str, norm: str) -> list[tup
 
 def local_order_figure(record: Record, solution: str, quantity: str = "u", norm: str = "rms") -> Figure:
     """Figure of the local orders of one solution with the registered band."""
-    series = [s for s in record.series if s.first.solution == solution]
+    series = [s for s in record.drawn if s.first.solution == solution]
     with rc_context(style.RC):
         figure = Figure(figsize=(5.2, 4.8), layout="constrained")
         axes = figure.subplots()
@@ -56,7 +56,12 @@ def _band(axes: Axes, record: Record, solution: str, quantity: str, norm: str) -
     """The band that was registered for the first judged order."""
     for d in record.study.plans:
         e = d.expectation
-        if e and e.order is not None and d.judged and (d.solution, d.quantity, d.norm) == (solution, quantity, norm):
+        if (
+            e
+            and e.order is not None
+            and d.judged
+            and (d.run.solution, d.quantity, d.norm) == (solution, quantity, norm)
+        ):
             axes.axhspan(e.order - e.below, e.order + e.above, color="#009E73", alpha=0.16, linewidth=0)
             axes.annotate(
                 "registered band", (0.02, e.order + e.above), (0, 3), color=style.GREY, fontsize=9.5,

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from mpm_verify.cases.column.exam import ColumnAnalysis, look
+from mpm_verify.cases.column.exam import ColumnAnalysis
 from mpm_verify.cases.column.run import ColumnResult, ColumnRun
 from mpm_verify.cases.harness.store import Store, StoreError
 from mpm_verify.reports.components.examined import Section, checks_table, render
@@ -12,16 +12,16 @@ from mpm_verify.reports.components.show import Table
 from mpm_verify.reports.components.words import DASH, percent
 from mpm_verify.reports.export.column_files import files, tables
 from mpm_verify.reports.figures import column as draw
-from mpm_verify.reports.frames import held
+from mpm_verify.reports.frames import Record
 from mpm_verify.reports.pages._column_more import alive, films, refinement, set_up
 from mpm_verify.reports.sentences import failures
 
 WORDS = {True: "reproduced", False: "not reproduced", None: "cannot be told"}
 
 
-def page(folder: Path, vtk: bool = False) -> tuple[ColumnAnalysis, Path]:
-    """Write the page of a study folder, its tables, and with `vtk` the files of its snapshots. Raises StoreError."""
-    collapse, store = read(folder)
+def page(record: Record, vtk: bool = False) -> Path:
+    """Write the page of a study, its tables, and with `vtk` the files of its snapshots. Raises StoreError."""
+    collapse, store, folder = record.analysis.more, record.store, record.store.folder
     made = render(folder, collapse.examination, lambda _, add: sections(collapse, store, add))
     try:
         tables(collapse, store, folder / "tables")
@@ -29,14 +29,7 @@ def page(folder: Path, vtk: bool = False) -> tuple[ColumnAnalysis, Path]:
             files(collapse, store, folder / "vtk")
     except OSError as error:
         raise StoreError(f"cannot write into {folder}: {error.strerror}; the results are kept") from error
-    return collapse, made
-
-
-def read(folder: Path) -> tuple[ColumnAnalysis, Store]:
-    """What the folder holds; results of earlier sources where there are none of these. Raises StoreError."""
-    store = Store(folder, "column")
-    study = store.study()
-    return look(study, held(store, study)[0], store), store
+    return made
 
 
 def sections(collapse: ColumnAnalysis, store: Store, add: Add) -> Sequence[Section]:

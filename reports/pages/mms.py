@@ -6,7 +6,7 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from mpm_verify.cases.harness.store import Store, StoreError
-from mpm_verify.cases.harness.study import QUANTITIES, Run
+from mpm_verify.cases.mms.run import QUANTITIES, Run
 from mpm_verify.reports.components import audited, show, show_axes, show_graded, show_runs, words
 from mpm_verify.reports.components.cards import cards, summary
 from mpm_verify.reports.components.cost import compares
@@ -21,7 +21,7 @@ from mpm_verify.reports.figures.local_orders import local_order_figure
 from mpm_verify.reports.figures.particles import particles
 from mpm_verify.reports.figures.position import position
 from mpm_verify.reports.figures.time_step import time_step
-from mpm_verify.reports.frames import Record, read
+from mpm_verify.reports.frames import Record
 from mpm_verify.reports.tables import study as tables
 
 TIME = "Error of u in rms against the Courant number on the finest cells, both axes logarithmic; numbers in the table."
@@ -29,15 +29,15 @@ PLACE = "Error of u in rms over the median of its level, with the particles at s
 COUNT = "error of u in rms against the particles per cell, a line a cell size; numbers in the table."
 
 
-def render(folder: Path, cells: int = CELLS, ppc: int = PPC, record: Record | None = None) -> Path:
-    """Write report.html, figures/*.svg|pdf|png and tables/*.csv into a study folder; the path of the page.
+def page(record: Record, vtk: bool = False, field: tuple[int, int] = (CELLS, PPC)) -> Path:
+    """Write report.html, figures/*.svg|pdf|png and tables/*.csv into the folder of a study; the path of the page.
 
-    The error field is that of the run of each method nearest to `cells` a side and `ppc` particles per cell. `record`
-    is what the folder holds, if somebody has read it already.
+    The error field is that of the run of each method nearest to `field`: cells a side and particles per cell. Of this
+    case there are no snapshots, whatever `vtk` says.
 
-    Raises StoreError if the folder is no study folder, is broken, or cannot be written.
+    Raises StoreError if the folder cannot be written.
     """
-    record = record or read(folder)
+    folder = record.store.folder
     try:
         for name in ("figures", "tables"):
             (folder / name).mkdir(exist_ok=True)
@@ -45,7 +45,7 @@ def render(folder: Path, cells: int = CELLS, ppc: int = PPC, record: Record | No
         started = (folder / "tables" / "now.csv").stat().st_mtime_ns
         (folder / "tables" / "now.csv").unlink()
         tables.write(record, folder / "tables")
-        text = _page(record, folder / "figures", (cells, ppc))
+        text = _page(record, folder / "figures", field)
         for name in ("figures", "tables"):
             _sweep(folder / name, started)
         Store.write(folder / "report.html", text.encode())
@@ -137,7 +137,7 @@ def _field(record: Record, run: Run, add: Add) -> Image | None:
 def _alt(record: Record, solution: str, norm: str) -> str:
     """A panel of Figure 1 in words: the ends of each series and its failed runs."""
     parts = [f"Error of u in {norm} against cell size, both axes logarithmic."]
-    for s in (s for s in record.series if s.first.solution == solution):
+    for s in (s for s in record.drawn if s.first.solution == solution):
         found, lost = record.errors(s, "u", norm), record.failed(s)
         ends = [f"{words.sci(e)} at {words.cell_size(run.cells)}" for run, e in (found[:1] + found[1:][-1:])]
         text = f"{words.series(s.first)}: {' to '.join(ends) or 'no error'}"

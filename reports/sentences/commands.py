@@ -3,8 +3,10 @@
 import os
 import shlex
 from collections.abc import Sequence
+from dataclasses import fields
+from typing import Any
 
-from mpm_verify.cases.harness.study import QuantityPlan, Study
+from mpm_verify.cases.harness.study import QuantityPlan, Study, head
 from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.cases.judging.records import Action, Wanted
 from mpm_verify.reports.sentences import verdicts
@@ -12,12 +14,12 @@ from mpm_verify.solver.failure import FailureKind
 from mpm_verify.solver.plugins import is_file, split
 
 
-def reason(study: Study, found: Finding) -> str:
+def reason(study: Study[Any], found: Finding) -> str:
     """What decided, and the option that asks for the run that would decide where nothing does."""
     return verdicts.reason(found.verdict.reason, courants(study, found.plan))
 
 
-def command(study: Study, found: Finding) -> str:
+def command(study: Study[Any], found: Finding) -> str:
     """The whole command of the study that would decide; empty where no run would, or none can be asked for."""
     r = found.verdict.reason
     if r.wanted is None:
@@ -30,18 +32,21 @@ def command(study: Study, found: Finding) -> str:
     return shlex.join(replaced(typed(study, found.plan, r.wanted), *option))
 
 
-def courants(study: Study, plan: QuantityPlan) -> tuple[float, ...]:
+def courants(study: Study[Any], plan: QuantityPlan[Any]) -> tuple[float, ...]:
     """Courant numbers of the runs of a declared quantity, the largest first."""
-    name = (plan.method, plan.solution, plan.ppc)
-    return tuple(sorted({r.courant for r in study.runs if (r.method, r.solution, r.ppc) == name}, reverse=True))
+    return tuple(sorted({run.courant for run in study.runs if head(run) == plan.head}, reverse=True))
 
 
-def typed(study: Study, plan: QuantityPlan, wanted: Wanted) -> list[str]:
-    """The words of the study's command, or of one of `verify mms` that has the series where another made the study."""
+def typed(study: Study[Any], plan: QuantityPlan[Any], wanted: Wanted) -> list[str]:
+    """The words of the study's command, or of one of its case that has the series where another made the study."""
     words = shlex.split(study.command)
-    if words[:2] == ["verify", "mms"]:
+    if words[:2] == ["verify", study.case]:
         return [relative(word) for word in words]
-    words = ["verify", "mms", "--method", plan.method, "--solution", relative(plan.solution), "--ppc", str(plan.ppc)]
+    usual = {item.name: item.default for item in fields(plan.run)}
+    words = ["verify", study.case]
+    for name, value in plan.head:
+        if value != usual[name] or name == "ppc":
+            words += [f"--{name.replace('_', '-')}", relative(str(value))]
     return replaced(words, "--cells", ",".join(map(str, wanted.cells)))
 
 

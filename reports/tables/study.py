@@ -8,15 +8,16 @@ from typing import Any
 import pandas as pd
 
 from mpm_verify.cases.harness.axes import crossed, particle_axes, position_axes, time_axes
-from mpm_verify.cases.harness.study import NORMS, QUANTITIES, QuantityPlan
+from mpm_verify.cases.harness.study import Head, QuantityPlan
+from mpm_verify.cases.mms.run import NORMS, QUANTITIES
 from mpm_verify.reports.components.cost import compares, costs
 from mpm_verify.reports.figures.local_orders import orders as pairs
-from mpm_verify.reports.frames import Record
+from mpm_verify.reports.frames import Record, joined
 from mpm_verify.reports.sentences import commands, failures
 from mpm_verify.reports.sentences import stalls as told
 
 Rows = list[dict[str, Any]]
-KEY = ("method", "solution", "ppc", "quantity", "norm")
+Key = tuple[Head, str, str]
 
 
 def write(record: Record, folder: Path) -> None:
@@ -42,8 +43,8 @@ def frames(record: Record) -> dict[str, pd.DataFrame]:
     return {name: pd.DataFrame(rows) for name, rows in made.items() if rows}
 
 
-def roles(record: Record) -> dict[tuple[Any, ...], str]:
-    """`judged` or `shown` for each declared (method, solution, ppc, quantity, norm); what is not declared is shown."""
+def roles(record: Record) -> dict[Key, str]:
+    """`judged` or `shown` for each declared quantity; what is not declared is shown."""
     return {key(d): "judged" if d.judged else "shown" for d in record.study.plans}
 
 
@@ -55,7 +56,7 @@ def verdicts(record: Record) -> Rows:
         expected = None if e is None else e.kind if e.order is None else e.order
         low, high = v.interval or (None, None)
         rows.append(
-            dict(zip(KEY, key(d), strict=True))
+            named(record, d)
             | {"role": "judged" if d.judged else "shown", "expected": expected, "observed": v.observed}
             | {"low": low, "high": high, "verdict": str(v.outcome) if e else None}
             | {"code": str(v.reason.code) if e else None, "reason": commands.reason(record.study, found) if e else None}
@@ -71,7 +72,7 @@ def errors(record: Record) -> Rows:
         result = record.result(run)
         for quantity in QUANTITIES if result and result.status == "finished" else ():
             norms = {norm: record.error(run, quantity, norm) for norm in NORMS}
-            head = {"method": run.method, "solution": run.solution, "ppc": run.ppc, "cells": run.cells}
+            head = record.columns(run) | {"cells": run.cells}
             exact = result.scale.get(quantity) if result else None
             where = {"offset_x": run.offset[0], "offset_y": run.offset[1]}
             rows.append(head | {"courant": run.courant} | where | {"quantity": quantity} | norms | {"exact_rms": exact})
@@ -84,13 +85,13 @@ def orders(record: Record) -> Rows:
     for s in record.series:
         for quantity in QUANTITIES:
             for norm in NORMS:
-                name = (s.first.method, s.first.solution, s.first.ppc, quantity, norm)
+                name = (s.head, quantity, norm)
                 for coarse, fine, order in pairs(record, s, quantity, norm):
-                    row: dict[str, Any] = dict(zip(KEY, name, strict=True))
                     rows.append(
-                        row
+                        record.columns(s.first)
+                        | {"quantity": quantity, "norm": norm}
                         | {"role": role.get(name, "shown"), "from_cells": coarse, "to_cells": fine, "order": order}
-                        | {"crossings_per_particle": passed.get((*name[:3], fine))}
+                        | {"crossings_per_particle": passed.get((s.head, fine))}
                     )
     return rows
 
@@ -101,7 +102,7 @@ def contamination(record: Record) -> Rows:
     for found in record.findings:
         shares = found.verdict.contamination
         if shares is not None:
-            row: dict[str, Any] = dict(zip(KEY, key(found.plan), strict=True))
+            row = named(record, found.plan)
             row |= {"role": "judged" if found.plan.judged else "shown"}
             rows.append(row | {"lower_order": shares.lower, "floor": shares.floor, "at_most": shares.most})
     return rows
@@ -133,7 +134,7 @@ def stalls(record: Record) -> Rows:
     rows = []
     for found in record.findings:
         for cause in found.stall.causes if found.stall else ():
-            row: dict[str, Any] = dict(zip(KEY, key(found.plan), strict=True))
+            row = named(record, found.plan)
             row |= {
                 "where": told.where(found.stall) if found.stall else None,
                 "code": str(cause.code),
@@ -148,7 +149,7 @@ def time_step(record: Record) -> Rows:
     rows = []
     for quantity, norm in product(QUANTITIES, NORMS):
         for a in time_axes(record.study.runs, record.results, quantity, norm):
-            head = {"method": a.run.method, "solution": a.run.solution, "ppc": a.run.ppc, "cells": a.run.cells}
+            head = record.columns(a.run) | {"cells": a.run.cells}
             for courant, error, order, share in zip(a.courants, a.errors, (None, *a.orders), a.shares, strict=True):
                 row = head | {"quantity": quantity, "norm": norm, "courant": courant, "error": error}
                 rows.append(row | {"order": order, "share_of_time_step": share})
@@ -160,7 +161,8 @@ def particles_per_cell(record: Record) -> Rows:
     rows = []
     for quantity, norm in product(QUANTITIES, NORMS):
         for a in particle_axes(record.study.runs, record.results, quantity, norm):
-            head = {"method": a.run.method, "solution": a.run.solution, "cells": a.run.cells}
+            head = record.columns(a.run) | {"cells": a.run.cells}
+            head.pop("ppc")
             for count, error, order in zip(a.ppc, a.errors, (None, *a.orders), strict=True):
                 row = head | {"quantity": quantity, "norm": norm, "ppc": count, "error": error}
                 rows.append(row | {"order_in_spacing": order})
@@ -172,19 +174,24 @@ def position(record: Record) -> Rows:
     rows = []
     for quantity, norm in product(QUANTITIES, NORMS):
         for a in position_axes(record.study.runs, record.results, quantity, norm):
-            head = {"method": a.run.method, "solution": a.run.solution, "ppc": a.run.ppc}
+            head = record.columns(a.run)
             for cells, errors, (low, mid, high) in zip(a.cells, a.errors, a.ends, strict=True):
                 row = head | {"quantity": quantity, "norm": norm, "cells": cells, "runs": len(errors)}
                 rows.append(row | {"usual": errors[0], "smallest": low, "median": mid, "largest": high})
     return rows
 
 
-def crossings(record: Record) -> dict[tuple[Any, ...], float]:
-    """Faces of cells that a particle passed, by (method, solution, ppc, cells)."""
-    every = [(run, crossed(record.result(run))) for series in record.series for run in series.runs]
-    return {(run.method, run.solution, run.ppc, run.cells): passed for run, passed in every if passed is not None}
+def crossings(record: Record) -> dict[tuple[Head, int], float]:
+    """Faces of cells that a particle passed, by refinement and cells."""
+    every = [(series.head, run.cells, crossed(record.result(run))) for series in record.series for run in series.runs]
+    return {(head, cells): passed for head, cells, passed in every if passed is not None}
 
 
-def key(d: QuantityPlan) -> tuple[Any, ...]:
+def named(record: Record, plan: QuantityPlan[Any]) -> dict[str, Any]:
     """What names a declared quantity."""
-    return d.method, d.solution, d.ppc, d.quantity, d.norm
+    return joined(record.columns(plan.run), {"quantity": plan.quantity, "norm": plan.norm})
+
+
+def key(plan: QuantityPlan[Any]) -> Key:
+    """The same as a key."""
+    return plan.head, plan.quantity, plan.norm

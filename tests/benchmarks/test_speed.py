@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 import yardstick
 
-from mpm_verify.cases.harness.study import Run
 from mpm_verify.cases.mms.case import Comparison, setup
+from mpm_verify.cases.mms.run import Run
 from mpm_verify.solver._jit import use_threads
 from mpm_verify.solver.boundary import MASS_CUTOFF
 from mpm_verify.solver.plugins import available

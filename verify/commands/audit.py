@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS
-from mpm_verify.verify.options.choices import choices, completion
+from mpm_verify.verify.choices import choices, completion
 from mpm_verify.verify.terminal.output import printing
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ def audit(
     json_output: Annotated[bool, typer.Option("--json", help="One JSON document on standard output.")] = False,
 ) -> None:
     """Say what a manufactured solution cannot see, and what it can, in words and numbers."""
-    from mpm_verify.verify.conduct import usage
+    from mpm_verify.verify.run import usage
 
     with usage():
         law, result = examine(solution, material)
@@ -88,3 +88,8 @@ def show(title: str, result: "Audit") -> None:
     out.print(Text("\nin numbers", "bold"))
     numbers = (f"{value:.3g} {name}" for name, value in result.numbers.items())
     out.print(Columns(map(Text, numbers), padding=(0, 3), equal=True, column_first=True))
+
+
+def add(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command("audit")(audit)

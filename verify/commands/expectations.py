@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from mpm_verify.solver.plugins import METHODS, SOLUTIONS
-from mpm_verify.verify.options.choices import completion
+from mpm_verify.verify.choices import completion
 from mpm_verify.verify.terminal.output import printing
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ def expectations(
     json_output: Annotated[bool, typer.Option("--json", help="One JSON document on standard output.")] = False,
 ) -> None:
     """What is expected of each method on each solution, with its source: registered before anything runs."""
-    from mpm_verify.verify.conduct import usage
+    from mpm_verify.verify.run import usage
 
     with usage():
         from mpm_verify.cases.mms.expectations import registry
@@ -89,3 +89,8 @@ def word(e: "Expectation") -> str:
     if e.order is not None:
         return f"{e.order:g} ({e.order - e.below:.2g}\N{EN DASH}{e.order + e.above:.2g})"
     return verdicts.registered(e)
+
+
+def add(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command("expectations")(expectations)

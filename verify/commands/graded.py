@@ -1,19 +1,17 @@
 """`verify graded`: uniform layouts of particles against layouts that are finer where strain is expected."""
 
-import shlex
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from mpm_verify.solver.plugins import METHODS, SOLUTIONS
-from mpm_verify.verify.commands.mms import repeatable
-from mpm_verify.verify.options.choices import choices, completion, integers
-from mpm_verify.verify.options.common import Jobs, Json, check_count
+from mpm_verify.verify.choices import choices, completion, integers
+from mpm_verify.verify.options import DryRun, Jobs, Json, Out, Page, Yes, split
 
 if TYPE_CHECKING:
     from mpm_verify.cases.mms.graded import Plan
+    from mpm_verify.reports.frames import Record
 
 
 def graded(
@@ -40,31 +38,35 @@ def graded(
     ] = 2.0,
     power: Annotated[float, typer.Option(help="Of the strain that particles per length follow.")] = 0.25,
     jobs: Jobs = None,
-    out: Annotated[Path | None, typer.Option(help="Study folder.", show_default="results/graded")] = None,
+    out: Out = None,
     json_output: Json = False,
+    page: Page = None,
+    dry_run: DryRun = False,
+    yes: Yes = False,
 ) -> int:
     """Error against cost of uniform, graded and thinned layouts. Nothing is judged: exit code 3."""
-    from mpm_verify.verify.conduct import Settings, conduct, usage
+    from mpm_verify.verify.run import Settings, command, conduct, named, usage
 
     with usage():
         from mpm_verify.cases.mms.graded import Plan, build_graded
 
         usual = Plan()
         plan = Plan(
-            tuple(dict.fromkeys(method or usual.methods)),
-            tuple(dict.fromkeys(solution or usual.solutions)),
+            listed(method) or usual.methods,
+            listed(solution) or usual.solutions,
             integers(cells, "--cells"),
             integers(ppc, "--ppc"),
             contrast,
             power,
         )
-        study = build_graded(plan, "verify " + shlex.join(repeatable(sys.argv[1:])), name(plan))
-        check_count(jobs, "--jobs")
-    folder = out or Path("results") / study.name
-    code = conduct(study, Settings(folder, jobs, 1, json_output))
-    if not json_output:
-        show(folder)
-    return code
+        study = build_graded(plan, command(), name(plan))
+    settings = Settings(named(study, out), jobs, 1, json_output, page=page, dry_run=dry_run, yes=yes, show=show)
+    return conduct(study, settings)
+
+
+def listed(texts: list[str] | None) -> tuple[str, ...]:
+    """Names from an option that may be repeated and has several with commas, each once."""
+    return tuple(dict.fromkeys(one for text in texts or () for one in split(text)))
 
 
 def name(plan: "Plan") -> str:
@@ -80,16 +82,16 @@ def name(plan: "Plan") -> str:
     return re.sub(r"[^A-Za-z0-9.]+", "-", " ".join(words)).strip("-")[:120]
 
 
-def show(folder: Path) -> None:
-    """Print what graded and thinned layouts save."""
+def show(record: "Record", page: Path | None) -> None:
+    """Print errors and orders, and what graded and thinned layouts save."""
     from rich.table import Table
 
     from mpm_verify.reports.components.show_graded import OVERVIEW, WHAT, overview
-    from mpm_verify.reports.frames import read
-    from mpm_verify.verify.terminal.output import printing
+    from mpm_verify.verify.terminal import table
     from mpm_verify.verify.terminal.table import Listened
 
-    found, out = overview(read(folder)), Listened(highlight=False, soft_wrap=False)
+    table.show(record, page)
+    found, out = overview(record), Listened(highlight=False, soft_wrap=False)
     if not out.is_terminal:
         out.width = max(out.width, 110)
     drawn = Table(box=None, pad_edge=False, header_style="dim")
@@ -97,7 +99,11 @@ def show(folder: Path) -> None:
         drawn.add_column(column, justify="left" if column in OVERVIEW[:4] else "right")
     for row in found.rows:
         drawn.add_row(*row)
-    with printing():
-        out.print(f"\n{found.caption}\n")
-        out.print(drawn)
-        out.print(f"\n{WHAT}")
+    out.print(f"\n{found.caption}\n")
+    out.print(drawn)
+    out.print(f"\n{WHAT}")
+
+
+def add(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command("graded")(graded)

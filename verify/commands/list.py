@@ -33,7 +33,7 @@ def list_plugins() -> None:
             typer.echo(f"{KINDS[package]}s{REMARKS.get(package, '')}")
             for name in available(package):
                 typer.echo(f"  {name:20}{summary(package, name)}")
-        typer.echo("studies of the column (verify sweep)")
+        typer.echo("studies (verify sweep)")
         for name in shipped():
             typer.echo(f"  {name:20}{title(name)}")
 
@@ -42,3 +42,8 @@ def summary(package: str, name: str) -> str:
     """First sentence of a plug-in's docstring, without importing it."""
     text = ast.get_docstring(ast.parse(path(package, name).read_text())) or ""
     return text.partition("\n")[0]
+
+
+def add(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command("list")(list_plugins)

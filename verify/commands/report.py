@@ -1,68 +1,49 @@
-"""`verify report DIR`: make the report of a stored study or examination again; runs nothing."""
+"""`verify report DIR`: make the page of a stored study again; runs nothing."""
 
-from importlib import import_module
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mpm_verify.verify.options.choices import integers
+from mpm_verify.verify.choices import integers
 from mpm_verify.verify.terminal.output import printing
 
-PAGES = {
-    "objectivity": "mpm_verify.reports.pages.objectivity",
-    "material": "mpm_verify.reports.pages.element",
-}  # of examinations
+if TYPE_CHECKING:
+    from mpm_verify.reports.frames import Record
 
 
 def report(
-    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a study or an examination.")],
-    field: Annotated[str, typer.Option(help="Run of the error field: cells,particles per cell.")] = "16,4",
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a study.")],
+    field: Annotated[
+        str | None,
+        typer.Option(help="Run of the error field: cells,particles per cell.", show_default="the one nearest to 16,4"),
+    ] = None,
 ) -> None:
-    """Make the HTML report, figures and tables of what is stored again, without running anything."""
-    from mpm_verify.verify.conduct import usage
+    """Make the HTML page, figures and tables of what is stored again, without running anything."""
+    from mpm_verify.verify.run import page_of, usage
 
     with usage():
-        chosen = integers(field, "--field")
-        if len(chosen) != 2 or min(chosen) < 1:
-            raise ValueError(f"--field {field!r} is no run; write cells,particles per cell, such as 64,4")
-        page = made(folder, *chosen)
+        from mpm_verify.reports.frames import read
+
+        record = read(folder)
+        page = page_of(record, vtk=(folder / "vtk").exists(), **({"field": of(field, record)} if field else {}))
     with printing():
         typer.echo(f"report: {page}")
 
 
-def made(folder: Path, cells: int, ppc: int) -> Path:
-    """The page of whatever the folder holds."""
-    if (folder / "examination.json").exists():
-        return examined(folder)
-    from mpm_verify.cases.harness.store import case_of
-
-    if case_of(folder) == "column":
-        from mpm_verify.reports.pages.column import page
-
-        return page(folder, vtk=(folder / "vtk").exists())[1]
-    return study(folder, cells, ppc)
-
-
-def study(folder: Path, cells: int, ppc: int) -> Path:
-    """The page of a study."""
-    from mpm_verify.reports.pages.mms import render
-
-    return render(folder, cells, ppc)
+def of(field: str, record: "Record") -> tuple[int, int]:
+    """Cells and particles per cell of a run of the study. Raises ValueError for one that it has not."""
+    chosen = integers(field, "--field")
+    if len(chosen) != 2 or min(chosen) < 1:
+        raise ValueError(f"--field {field!r} cannot be read; write cells,particles per cell, such as 64,4")
+    runs = record.study.runs
+    there = sorted({(run.cells, run.ppc) for run in runs if hasattr(run, "cells")})
+    if chosen not in there:
+        known = "; ".join(f"{cells},{ppc}" for cells, ppc in there)
+        raise ValueError(f"--field {field}: the study has no such run; choose from {known or 'none'}")
+    return chosen[0], chosen[1]
 
 
-def examined(folder: Path) -> Path:
-    """The page of an examination: its name, up to a hyphen, says which. Raises ValueError, StoreError."""
-    from mpm_verify.cases.harness.checks import load
-    from mpm_verify.cases.harness.store import StoreError
-
-    examination = load(folder)
-    kind = examination.name.partition("-")[0]
-    if kind not in PAGES:
-        known = ", ".join(PAGES)
-        raise ValueError(f"{folder} holds an examination {examination.name!r}, which must be of {known}, or newer")
-    try:
-        page: Path = import_module(PAGES[kind]).page(folder, examination)
-    except KeyError as error:
-        raise StoreError(f"{folder} lacks {error}, which this version draws; run it again") from error
-    return page
+def add(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command("report")(report)

@@ -1,14 +1,11 @@
-"""`verify sweep`: studies of the column, the paper's figures among them, from TOML files."""
+"""`verify sweep`: studies from TOML files, the paper's figures among them."""
 
-import shlex
-import sys
-from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from mpm_verify.cases.harness.shipped import shipped
-from mpm_verify.verify.options.common import Jobs, Json, Junit, Vtk
+from mpm_verify.verify.options import DryRun, Jobs, Json, Junit, Out, Page, Summary, Threads, Vtk, Yes
 
 
 def sweep(
@@ -22,17 +19,26 @@ def sweep(
     ],
     vtk: Vtk = False,
     jobs: Jobs = None,
-    threads: Annotated[int, typer.Option(help="Threads of each run.")] = 1,
-    out: Annotated[Path | None, typer.Option(help="Study folder.", show_default="results/STUDY")] = None,
+    threads: Threads = 1,
+    out: Out = None,
     json_output: Json = False,
     junit: Junit = None,
+    summary: Summary = None,
+    page: Page = None,
+    dry_run: DryRun = False,
+    yes: Yes = False,
 ) -> int:
-    """Run all combinations of a study's axes on the collapsing column, and hold them against the paper."""
-    from mpm_verify.verify.collapse import Wanted, conduct
-    from mpm_verify.verify.conduct import usage
+    """Run all combinations of a study's axes, of any case, and judge them; the column is held against the paper."""
+    from mpm_verify.verify.run import Settings, command, conduct, named, usage
 
     with usage():
-        from mpm_verify.cases.column.sweep import read
+        from mpm_verify.cases.harness.study_file import read
 
-        read_ = read(study, "verify " + shlex.join(sys.argv[1:]))
-    return conduct(read_, out or Path("results") / read_.name, jobs, threads, Wanted(vtk, json_output, junit))
+        read_ = read(study, command())
+    settings = Settings(named(read_, out), jobs, threads, json_output, junit, summary, page, vtk, dry_run, yes)
+    return conduct(read_, settings)
+
+
+def add(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command("sweep")(sweep)

@@ -7,10 +7,10 @@ from rich.table import Table
 from mpm_verify.reports.components.cards import summary
 from mpm_verify.reports.components.show_cost import overview
 from mpm_verify.reports.frames import Record
-from mpm_verify.verify.terminal.table import Listened, verdict
+from mpm_verify.verify.terminal.table import Listened, verdict, where
 
 
-def show_overview(record: Record, report: Path) -> None:
+def show_overview(record: Record, page: Path | None) -> None:
     """Print to standard output, as wide as the terminal is and wide enough for a line a method where there is none."""
     out = Listened(highlight=False, soft_wrap=False)
     found = overview(record)
@@ -28,5 +28,4 @@ def show_overview(record: Record, report: Path) -> None:
         if finding.plan.judged and finding.verdict.outcome != "PASS":
             verdict(out, record.study, finding, several=True)
     out.print(f"\n{summary(record)}")
-    out.print("\nVerdicts, error against cost, where orders fall and why, and how it was made:")
-    out.print(f"report: {report}", soft_wrap=True)
+    where(out, page, "\nVerdicts, error against cost, where orders fall and why, and how it was made:")

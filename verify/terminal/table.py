@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 from itertools import zip_longest
 from pathlib import Path
+from typing import Any
 
 from rich.console import Console
 from rich.table import Table
@@ -12,6 +13,7 @@ from mpm_verify.cases.harness.axes import middle
 from mpm_verify.cases.harness.study import QuantityPlan, Study
 from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.cases.judging.stall import Stall
+from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences import commands, stalls, verdicts
 
 STYLES = {"PASS": "bold green", "FAIL": "bold red", "INCONCLUSIVE": "bold yellow", "ERROR": "bold magenta"}
@@ -26,8 +28,9 @@ class Listened(Console):
         raise BrokenPipeError
 
 
-def show(study: Study, found: Sequence[Finding], report: Path, console: Console | None = None) -> None:
+def show(record: Record, page: Path | None, console: Console | None = None) -> None:
     """Print to standard output, as wide as the terminal is and 100 columns where there is none."""
+    study, found = record.study, record.findings
     out = console or Listened(highlight=False, soft_wrap=False)
     if not out.is_terminal:
         out.width = max(out.width, 100)
@@ -35,7 +38,7 @@ def show(study: Study, found: Sequence[Finding], report: Path, console: Console 
     out.print(errors_table([f for f in found if f.plan.judged or (f.plan.quantity, f.plan.norm) == ALWAYS]))
     if most := max((len(level.errors) for f in found for level in f.levels), default=1) - 1:
         out.print(f"errors are geometric means of up to {most + 1} runs with the particles elsewhere in their cells")
-    several = len({finding.plan.solution for finding in found}) > 1
+    several = len({finding.plan.run.solution for finding in found}) > 1
     for finding in found:
         if finding.plan.judged:
             verdict(out, study, finding, several)
@@ -44,14 +47,20 @@ def show(study: Study, found: Sequence[Finding], report: Path, console: Console 
             out.print(stall(finding, finding.stall, several))
     if not any(f.plan.judged for f in found):
         out.print("INCONCLUSIVE: nothing here has a registered expectation, so nothing is judged.")
-    out.print("\nMore quantities and norms, figures, and how it was made:")
-    out.print(f"report: {report}", soft_wrap=True)
+    where(out, page, "\nMore quantities and norms, figures, and how it was made:")
+
+
+def where(out: Console, page: Path | None, words: str = "") -> None:
+    """Say where the page is, or how to draw it."""
+    if page:
+        out.print(words)
+        out.print(f"report: {page}", soft_wrap=True)
 
 
 def errors_table(found: Sequence[Finding]) -> Table:
     """Error, local order, and faces of cells that a particle passed, at each cell count; a failed run by its reason."""
     table = Table(box=None, pad_edge=False, header_style="dim")
-    several = len({finding.plan.solution for finding in found}) > 1
+    several = len({finding.plan.run.solution for finding in found}) > 1
     for name in (*(("solution",) if several else ()), "method", "per cell", "quantity", "cells"):
         table.add_column(name, justify="right" if name in ("per cell", "cells") else "left")
     for name in ("error", "order", "crossings"):
@@ -59,7 +68,7 @@ def errors_table(found: Sequence[Finding]) -> Table:
     table.add_column("")
     for finding in found:
         for number, row in enumerate(rows(finding)):
-            solution = finding.plan.solution if number == 0 else ""
+            solution = finding.plan.run.solution if number == 0 else ""
             table.add_row(*((solution,) if several else ()), *row)
     return table
 
@@ -67,7 +76,7 @@ def errors_table(found: Sequence[Finding]) -> Table:
 def rows(finding: Finding) -> Iterator[tuple[str, ...]]:
     """A row a level; names once a block."""
     d, orders = finding.plan, iter(finding.verdict.local_orders)
-    first, earlier = (d.method, str(d.ppc), f"{d.quantity} {d.norm}"), False
+    first, earlier = (d.run.method, str(d.run.ppc), f"{d.quantity} {d.norm}"), False
     for level, passed in zip_longest(finding.levels, finding.crossings):
         cells, faces = f"{1 / level.h:.0f}", "" if passed is None else f"{passed:.1f}"
         if level.ended:
@@ -84,7 +93,7 @@ def order(local: float | None) -> str:
     return "" if local is None else f"{local:.2f}"
 
 
-def verdict(out: Console, study: Study, finding: Finding, several: bool = False) -> None:
+def verdict(out: Console, study: Study[Any], finding: Finding, several: bool = False) -> None:
     """Print the verdict in words, and the command that would decide on a line of its own, to be copied whole."""
     out.print(sentence(finding, several))
     if command := commands.command(study, finding):
@@ -100,10 +109,10 @@ def sentence(finding: Finding, several: bool = False) -> Text:
     return text
 
 
-def named(declared: QuantityPlan, several: bool) -> str:
+def named(declared: QuantityPlan[Any], several: bool) -> str:
     """What a sentence is about, with its solution if the study has several."""
-    solution = f" on {declared.solution}" if several else ""
-    return f"{declared.method}{solution}, {declared.ppc} per cell, {declared.quantity} in {declared.norm}"
+    solution = f" on {declared.run.solution}" if several else ""
+    return f"{declared.run.method}{solution}, {declared.run.ppc} per cell, {declared.quantity} in {declared.norm}"
 
 
 def stall(finding: Finding, found: Stall, several: bool = False) -> Text:

@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-
-from mpm_verify.solver.plugins import MATERIALS
 from mpm_verify.verify.options.choices import choices, completion
 from mpm_verify.verify.options.common import Json, Junit
+
+from mpm_verify.solver.plugins import MATERIALS
 
 if TYPE_CHECKING:
     from mpm_verify.cases.element.paths import ElementTest
@@ -59,9 +59,10 @@ def material(
         confined = confining(law, stress)
         if not 1 <= steps <= 10_000:
             raise ValueError("--steps takes whole numbers from 1 to 10000")
+        from mpm_verify.verify.examine import conduct
+
         from mpm_verify.cases.element.exam import examine
         from mpm_verify.reports.pages.element import page
-        from mpm_verify.verify.examine import conduct
 
     command = "verify " + shlex.join(sys.argv[1:])
     folder = out or Path("results") / f"material-{name.replace(':', '-').replace(',', '-')}"

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
-
 from mpm_verify.verify.options.common import Jobs, Json, Junit, check_count
 
 if TYPE_CHECKING:
@@ -24,9 +23,10 @@ def objectivity(
     junit: Junit = None,
 ) -> int:
     """Turn a block under gravity by 90 degrees, and follow objective rates and wrong readings of them."""
-    from mpm_verify.reports.pages.objectivity import page
     from mpm_verify.verify.conduct import usage
     from mpm_verify.verify.examine import conduct
+
+    from mpm_verify.reports.pages.objectivity import page
 
     with usage():
         from mpm_verify.cases.objectivity.turning_block import Block

@@ -1,0 +1,52 @@
+"""What a study says once it has run: verdicts of the order rule, checks of the case, and the exit code of both."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from mpm_verify.cases.harness.case import case_named
+from mpm_verify.cases.harness.checks import Check
+from mpm_verify.cases.harness.store import Store
+from mpm_verify.cases.harness.study import ResultRecord, Study
+from mpm_verify.cases.harness.verdicts import Finding, findings
+from mpm_verify.cases.judging.records import Outcome
+
+EXIT = {Outcome.PASS: 0, Outcome.FAIL: 1, Outcome.INCONCLUSIVE: 3, Outcome.ERROR: 4}
+WORST = (Outcome.FAIL, Outcome.ERROR, Outcome.INCONCLUSIVE, Outcome.PASS)
+
+
+@dataclass(frozen=True)
+class Analysis:
+    """`findings` of the order rule, `checks` of the case, and `more`: all that the case found, None without checks."""
+
+    findings: tuple[Finding, ...] = ()
+    checks: tuple[Check, ...] = ()
+    more: Any = None
+
+    @property
+    def outcomes(self) -> list[Outcome]:
+        """Outcomes of all that decides."""
+        return [f.verdict.outcome for f in self.findings if f.plan.judged] + [check.outcome for check in self.checks]
+
+    @property
+    def outcome(self) -> Outcome:
+        """The worst of them, a FAIL before an ERROR; INCONCLUSIVE where nothing is judged."""
+        return worst(self.outcomes)
+
+    @property
+    def exit_code(self) -> int:
+        """0 pass, 1 fail, 3 inconclusive or nothing judged, 4 nothing could be judged, as runs ended in error."""
+        return EXIT[self.outcome]
+
+
+def analyse(study: Study[Any], results: Mapping[str, ResultRecord[Any]], store: Store) -> Analysis:
+    """Judge what is stored; `results` by digest, those not there are runs not done."""
+    case = case_named(study.case)
+    more = case.examine(study, results, store) if case.examine else None
+    found = tuple(findings(study, results)) if study.plans else ()
+    return Analysis(found, tuple(more.checks) if more else (), more)
+
+
+def worst(outcomes: Sequence[Outcome]) -> Outcome:
+    """The outcome that decides among several; INCONCLUSIVE where there is none."""
+    return next((outcome for outcome in WORST if outcome in set(outcomes)), Outcome.INCONCLUSIVE)

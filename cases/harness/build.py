@@ -1,0 +1,168 @@
+"""A study from what is asked for: a case, values of its axes, and how many replicates; checked before anything runs."""
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, fields
+from itertools import product
+from typing import Any, cast, get_type_hints
+
+from pydantic import TypeAdapter, ValidationError
+
+from mpm_verify.cases.harness.case import Case, case_named
+from mpm_verify.cases.harness.refinement import complete, refines
+from mpm_verify.cases.harness.study import QuantityPlan, RunRecord, Study, head
+
+Values = Mapping[str, Sequence[Any]]
+FIRST = ("method", "solution", "material")  # axes whose values begin the name of a study
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What is asked for: values by the name of a field of the case's Run, and `replicates` of each point."""
+
+    case: str
+    values: Values
+    replicates: int = 1
+    quick: bool = False
+
+    @property
+    def contract(self) -> Case:
+        """The case."""
+        return case_named(self.case)
+
+
+def build(
+    asked: Asked, command: str, name: str = "", title: str = "", words: Sequence[str] = (), finish: int | None = None
+) -> Study[Any]:
+    """The study of one product of axes. Raises ValueError with one line for what cannot be run."""
+    return union([asked], command, name, title, words, finish)
+
+
+def union(
+    parts: Sequence[Asked],
+    command: str,
+    name: str = "",
+    title: str = "",
+    words: Sequence[str] = (),
+    finish: int | None = None,
+) -> Study[Any]:
+    """The study of several products of axes of one case. Raises ValueError with one line for what cannot be run."""
+    case = parts[0].contract
+    runs: list[RunRecord] = []
+    plans: list[QuantityPlan[Any]] = []
+    for part in parts:
+        more, declared = _runs(part)
+        runs += more
+        plans += declared
+    once = tuple(dict.fromkeys(runs))
+    unique = tuple({(plan.head, plan.quantity, plan.norm): plan for plan in reversed(plans)}.values())[::-1]
+    least = len(once) if finish is None else finish
+    if isinstance(least, bool) or not isinstance(least, int) or not 0 <= least <= len(once):
+        raise ValueError(f"finish = {finish!r} must be a whole number from 0 to the {len(once)} runs there are")
+    return Study(
+        name or named(parts[0]),
+        title or case.title(once),
+        command,
+        once,
+        unique,
+        axes(once),
+        tuple(words),
+        least,
+        case.name,
+    )
+
+
+def _runs(asked: Asked) -> tuple[tuple[Any, ...], list[QuantityPlan[Any]]]:
+    """Runs and plans of one product of axes."""
+    case = asked.contract
+    known = [item.name for item in fields(case.Run)]
+    for key in asked.values:
+        if key not in known:
+            raise ValueError(f"{case.name} has no axis {key!r}; it has {', '.join(known)}")
+    usual = case.quick if asked.quick else case.axes
+    values = {key: list(dict.fromkeys(asked.values.get(key) or usual.get(key) or ())) for key in known}
+    values = {key: chosen for key, chosen in values.items() if chosen}
+    times: list[float] = []
+    if case.quantities and refines(case.Run):
+        if len(values.get("offset", ())) > 1:
+            raise ValueError("offset: give one; replicates shift the particles of a refinement")
+        first, *times = values.get("courant") or [_default(case, "courant")]
+        if any(courant > first for courant in times):
+            raise ValueError(f"courant = {max(times)} is above the first, {first}; begin with the largest: 0.4,0.2,0.1")
+        values["courant"] = [first]
+        values |= {key: sorted(values[key]) for key in ("ppc", "cells") if key in values}
+        inner = [key for key in ("ppc", "cells") if key in values]
+        order = [key for key in values if key not in inner] + inner
+    else:
+        order = [*(key for key in asked.values if key in values), *(key for key in values if key not in asked.values)]
+    points = [dict(zip(order, point, strict=True)) for point in product(*(values[key] for key in order))]
+    runs = tuple(dict.fromkeys(make(case, point) for point in points))
+    for courant in times:
+        make(case, {**points[-1], "courant": courant})  # says what is wrong with it
+    case.check(runs)
+    if not (case.quantities and refines(case.Run)):
+        return runs, []
+    plans = [plan for one in {head(run): run for run in reversed(runs)}.values() for plan in declare(case, one)]
+    rank = {head(run): place for place, run in reversed(list(enumerate(runs)))}
+    plans.sort(key=lambda plan: rank[plan.head])
+    return complete(runs, plans, times, asked.replicates), plans
+
+
+def declare(case: Case, run: RunRecord) -> list[QuantityPlan[Any]]:
+    """What is declared of a refinement: every quantity in every norm, judged where something is registered."""
+    found, multiple = [], case.multiple(run)
+    for quantity in case.quantities:
+        for norm in case.norms:
+            expectation = case.expectation(run, quantity, norm)
+            judged = expectation is not None and (quantity, norm) in case.judged
+            found.append(QuantityPlan(run, quantity, norm, judged, expectation, multiple))
+    return found
+
+
+def make(case: Case, values: Mapping[str, Any]) -> RunRecord:
+    """One run. Raises ValueError with one line for a value that it cannot have."""
+    checked = {key: read(case.Run, key, value) for key, value in values.items()}
+    return case.Run(**case.canonical(checked))
+
+
+def read(run: type[RunRecord], key: str, value: Any) -> Any:
+    """The value of a field as a TOML file has it. Raises ValueError for one of another kind: true is no number here."""
+    hint = get_type_hints(run)[key]
+    try:
+        return TypeAdapter(hint).validate_python(tuple(value) if isinstance(value, list) else value, strict=True)
+    except ValidationError as error:
+        says = error.errors()[0]["msg"]
+        raise ValueError(f"{key} = {value!r}: {says[0].lower()}{says[1:]}") from None
+
+
+def axes(runs: Sequence[RunRecord]) -> tuple[str, ...]:
+    """Names of the fields in which the runs differ, in their order."""
+    names = [item.name for item in fields(runs[0])] if runs else []
+    return tuple(name for name in names if len({getattr(run, name) for run in runs}) > 1)
+
+
+def _default(case: Case, key: str) -> Any:
+    return next(item.default for item in fields(case.Run) if item.name == key)
+
+
+def named(asked: Asked) -> str:
+    """Name of a study: its methods and what is not as usual, so that another one gets a folder of its own."""
+    case, words = asked.contract, [asked.case]
+    values = {key: list(chosen) for key, chosen in asked.values.items()}
+    usual = {item.name: [item.default] for item in fields(case.Run)} | {k: list(v) for k, v in case.axes.items()}
+    for key in (key for key in FIRST if key in usual):
+        chosen = values.pop(key, usual[key])
+        words += map(str, chosen) if chosen != usual[key] or (key == "method" and case.quantities) else ()
+    for item in fields(case.Run):
+        if item.name in values and values[item.name] != usual[item.name]:
+            words += [item.name, *map(str, _flat(values[item.name]))]
+    words += ["replicates", str(asked.replicates)] if asked.replicates != 1 else []
+    words += ["quick"] if asked.quick and not {"cells", "ppc"} & asked.values.keys() else []
+    return re.sub(r"[^A-Za-z0-9.]+", "-", " ".join(words)).strip("-")[:120]
+
+
+def _flat(values: Iterable[Any]) -> list[Any]:
+    found: list[Any] = []
+    for value in values:
+        found += cast("Iterable[Any]", value) if isinstance(value, tuple) else [value]
+    return found

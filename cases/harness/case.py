@@ -1,0 +1,115 @@
+"""The contract of a case, and the way to it by its name: `cases/<name>/case.py` is found, no list holds it.
+
+A case is a module with
+    Run, Result      records of cases/harness/study.py; each field of Run can be an axis of a study
+    title            (runs) -> what a study of these runs is called unless it says otherwise
+    execute          (run, tick) -> (Result, arrays): runs to the end; what cannot go on is a failed Result
+and, where they apply, instead of the defaults of Case:
+    AXES             values of the axes that are not asked for, by field
+    QUANTITIES, NORMS, JUDGED, expectation      what the order rule is asked, see cases/harness/build.py
+    canonical        (values) -> values: one name for one thing
+    check            (runs): raises ValueError with one line for what cannot be run
+    examine          (study, results, store) -> Analysis: checks of what is stored
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from importlib import import_module
+from types import ModuleType
+from typing import Any
+
+from pydantic import TypeAdapter
+
+from mpm_verify.cases.harness.study import ResultRecord, RunRecord, Study
+from mpm_verify.cases.judging.records import Expectation
+from mpm_verify.solver.plugins import CASES, available
+
+
+@dataclass(frozen=True)
+class Case:
+    """A case by its module; what the module does not say has a default here."""
+
+    name: str
+    module: ModuleType
+
+    @property
+    def Run(self) -> type[RunRecord]:
+        """Class of its runs."""
+        return self.module.Run  # type: ignore[no-any-return]
+
+    @property
+    def title(self) -> Callable[[Sequence[RunRecord]], str]:
+        """Title of a study that has none of its own."""
+        return self.module.title  # type: ignore[no-any-return]
+
+    @property
+    def axes(self) -> Mapping[str, Sequence[Any]]:
+        """Values of axes that nobody asked for; any other field has its default."""
+        return getattr(self.module, "AXES", {})
+
+    @property
+    def quick(self) -> Mapping[str, Sequence[Any]]:
+        """Values of axes of a study that takes seconds."""
+        return getattr(self.module, "QUICK", {})
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        """Quantities whose errors refine, none of a case that is no refinement study."""
+        return getattr(self.module, "QUANTITIES", ())
+
+    @property
+    def norms(self) -> tuple[str, ...]:
+        """Norms of the errors."""
+        return getattr(self.module, "NORMS", ())
+
+    @property
+    def judged(self) -> tuple[tuple[str, str], ...]:
+        """Quantities and norms that are judged where something is expected of them."""
+        return getattr(self.module, "JUDGED", ())
+
+    @property
+    def expectation(self) -> Callable[[RunRecord, str, str], Expectation | None]:
+        """What is registered of a quantity and norm of the refinement that a run belongs to."""
+        return getattr(self.module, "expectation", lambda run, quantity, norm: None)
+
+    @property
+    def multiple(self) -> Callable[[RunRecord], int]:
+        """Number whose multiples are the cells that fit the body of a run."""
+        return getattr(self.module, "multiple", lambda run: 1)
+
+    @property
+    def canonical(self) -> Callable[[dict[str, Any]], dict[str, Any]]:
+        """One name for one thing: specifications without parameters that are at their defaults."""
+        return getattr(self.module, "canonical", lambda values: values)
+
+    @property
+    def check(self) -> Callable[[Sequence[RunRecord]], None]:
+        """Raises ValueError for runs that cannot be."""
+        return getattr(self.module, "check", lambda runs: None)
+
+    @property
+    def examine(self) -> Callable[..., Any] | None:
+        """Checks of what is stored, where the case has some."""
+        return getattr(self.module, "examine", None)
+
+    @property
+    def execute(self) -> Callable[..., Any]:
+        """A run to its end."""
+        return self.module.execute  # type: ignore[no-any-return]
+
+
+@cache
+def case_named(name: str) -> Case:
+    """The case of that name. Raises ValueError that lists the cases for another."""
+    if name not in available(CASES):
+        raise ValueError(f"no case {name!r}; choose from {', '.join(available(CASES))}")
+    return Case(name, import_module(f"{CASES}.{name}.case"))
+
+
+@cache
+def adapters(name: str) -> tuple[TypeAdapter[Any], TypeAdapter[Any]]:
+    """Readers of a case's study.json and of its Results, built once: it takes longer than to read a file."""
+    case = case_named(name)
+    result: type[ResultRecord[Any]] = case.module.Result
+    return TypeAdapter(Study[case.Run]), TypeAdapter(result)  # type: ignore[name-defined]

@@ -1,0 +1,32 @@
+"""A study in a few lines of Markdown, for the summary of a CI job."""
+
+from mpm_verify.reports.components import words
+from mpm_verify.reports.frames import Record
+from mpm_verify.reports.sentences import commands, verdicts
+
+MARKS = {"PASS": "✅", "FAIL": "❌", "INCONCLUSIVE": "❔", "ERROR": "⚠️"}
+
+
+def markdown(record: Record) -> str:
+    """Heading with the outcome, a row a judged quantity, a row a check that did not pass."""
+    study, found = record.study, record.analysis
+    lines = [f"### {MARKS[found.outcome]} {found.outcome}: {escaped(study.title)}", "", f"`{study.command}`", ""]
+    judged = [f for f in found.findings if f.plan.judged]
+    if judged:
+        lines += ["| | refinement | quantity | order | expected | reason |", "| --- | --- | --- | --- | --- | --- |"]
+        for f in judged:
+            d, v = f.plan, f.verdict
+            cells = (f"{MARKS[v.outcome]} {v.outcome}", record.label(d.run), f"{d.quantity} in {d.norm}",
+                     words.order(v.observed), verdicts.registered(d.expectation),
+                     commands.reason(study, f))  # fmt: skip
+            lines.append(f"| {' | '.join(map(escaped, cells))} |")
+    if found.checks:
+        missed = [check for check in found.checks if check.outcome != "PASS"]
+        lines += ["", f"{len(found.checks) - len(missed)} of {len(found.checks)} checks pass."]
+        lines += [f"- {MARKS[check.outcome]} {escaped(f'{check.group}: {check.name}')}" for check in missed]
+    return "\n".join(lines) + "\n"
+
+
+def escaped(text: str) -> str:
+    """Text of a table cell."""
+    return " ".join(text.replace("|", "\\|").replace("<", "&lt;").split())

@@ -1,0 +1,227 @@
+"""The public Python API, as `mpm_verify` gives it: derive, run, judge, and load what is stored as pandas frames.
+
+import mpm_verify as mv
+
+exact = mv.manufacture("clamped_shear")                    # fields and body force as NumPy functions
+done = mv.study("mms", method=["mpm", "cpdi"], cells=[8, 16, 32, 64], ppc=4, out="results/mine")
+done.outcome, done.verdicts                                # "PASS", ...
+done.frames()["errors"]                                    # a pandas.DataFrame
+mv.judge(cells=[8, 16, 32, 64], errors=[4e-3, 1e-3, 2.5e-4, 6.2e-5], order=2).reason
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from mpm_verify.cases.harness.study import Study
+    from mpm_verify.mms.manufacture import Manufactured
+    from mpm_verify.reports.frames import Record
+
+
+def manufacture(solution: str, material: str = "", rho0: float | None = None) -> "Manufactured":
+    """Exact fields and body force of a manufactured solution.
+
+    Parameters
+    ----------
+    solution
+        Name of a solution with parameters, `axis_aligned:A=0.01`, or the path of a file of your own.
+    material
+        Name of a constitutive model that has an energy, with parameters; usual is the solution's own.
+    rho0
+        Density at reference; usual is that of the material.
+
+    Returns
+    -------
+    Manufactured
+        Functions of reference positions X (P,2) and a time: u, x, v, b (P,2), F, P (P,2,2), sigma (P,4) as xx, yy, zz,
+        xy.
+
+    Raises
+    ------
+    ValueError
+        With one line for a name, parameter or file that cannot be used.
+    """
+    from mpm_verify.mms.manufacture import manufacture as derive
+    from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS, create
+
+    fields = create(SOLUTIONS, solution)
+    model = create(MATERIALS, material or fields.material)
+    return derive(fields, model, model.rho0 if rho0 is None else rho0)
+
+
+def study(
+    case: str = "mms",
+    *,
+    out: Path | str | None = None,
+    jobs: int | None = 1,
+    threads: int = 1,
+    replicates: int = 1,
+    quick: bool = False,
+    **axes: Any,
+) -> "StoredStudy":
+    """Run a study: what its folder holds is not run again.
+
+    Parameters
+    ----------
+    case
+        Name of a case: mms, column, ... (`verify list`).
+    out
+        Folder of the study; usual is results/NAME-OF-THE-STUDY.
+    jobs, threads
+        Runs at a time (processes; None: as many as processors), and threads of each.
+    replicates
+        Runs of each point of a refinement, with the particles elsewhere in their cells.
+    quick
+        Whether axes that are not given have the values of `--quick`.
+    **axes
+        Fields of the case's Run, one value or a list each, whose product is run.
+
+    Returns
+    -------
+    StoredStudy
+        The study with its verdicts, as `load` gives it.
+
+    Raises
+    ------
+    ValueError
+        With one line for what cannot be run.
+    StoreError
+        Where the folder cannot be read or written.
+    """
+    from mpm_verify.cases.harness.build import Asked, build
+    from mpm_verify.cases.harness.store import Store
+    from mpm_verify.verify.run import Settings, affordable, compute, named
+
+    values = {key: list(value) if isinstance(value, list | tuple) else [value] for key, value in axes.items()}
+    words = [f"{key}={value!r}" for key, value in axes.items()]
+    command = f"mpm_verify.study({', '.join([repr(case), *words])})"
+    asked: Study[Any] = build(Asked(case, values, replicates, quick), command)
+    settings = Settings(named(asked, Path(out) if out else None), jobs, threads, yes=True)
+    store = Store(settings.folder, case)
+    with store.locked():
+        store.create(asked)
+        affordable(asked, store, settings)
+        compute(asked, store, settings)
+    return load(settings.folder)
+
+
+def load(folder: Path | str) -> "StoredStudy":
+    """Read a stored study, whoever ran it. Raises StoreError for a folder that holds none, or a broken one."""
+    from mpm_verify.reports.frames import read
+
+    return StoredStudy(read(Path(folder)))
+
+
+@dataclass(frozen=True)
+class StoredStudy:
+    """A study with its results, as they are stored."""
+
+    record: "Record"
+
+    @property
+    def outcome(self) -> str:
+        """PASS, FAIL, INCONCLUSIVE or ERROR: the worst of all that is judged."""
+        return str(self.record.analysis.outcome)
+
+    @property
+    def exit_code(self) -> int:
+        """Exit code of the command that runs the same."""
+        return self.record.analysis.exit_code
+
+    @property
+    def verdicts(self) -> list[dict[str, Any]]:
+        """A dictionary for each judged quantity, as in the JSON document."""
+        from mpm_verify.reports.export.document import verdict
+
+        return [verdict(self.record, found) for found in self.record.findings if found.plan.judged]
+
+    @property
+    def checks(self) -> list[dict[str, Any]]:
+        """A dictionary for each check, as in the JSON document."""
+        from dataclasses import asdict
+
+        from mpm_verify.reports.export.document import check_row
+
+        return [asdict(check_row(check)) for check in self.record.analysis.checks]
+
+    def frames(self) -> "dict[str, pd.DataFrame]":
+        """Tables as pandas frames by name: runs, and of refinements errors, orders, verdicts and more."""
+        from mpm_verify.reports.tables.study import frames
+
+        return frames(self.record)
+
+    def page(self) -> Path:
+        """Draw the HTML page, and give its path."""
+        from mpm_verify.verify.run import page_of
+
+        return page_of(self.record)
+
+    def __repr__(self) -> str:
+        runs = f"{len(self.record.results)} runs in {self.record.store.folder}"
+        return f"<{self.record.study.title}: {self.outcome}, {runs}>"
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """What the order rule says: outcome, the sentence that gives the reason, fitted order and its interval."""
+
+    outcome: str
+    reason: str
+    order: float | None
+    interval: tuple[float, float] | None
+    local_orders: tuple[float, ...]
+
+    @property
+    def passed(self) -> bool:
+        """Whether the evidence shows the expected order."""
+        return self.outcome == "PASS"
+
+
+def judge(
+    cells: Sequence[int],
+    errors: Sequence[float],
+    order: float = 2.0,
+    *,
+    below: float = 0.2,
+    above: float = 0.3,
+    floor: float = 0.0,
+    dt_halved: float | None = None,
+) -> Judgement:
+    """Judge errors of a refinement by the order rule.
+
+    Parameters
+    ----------
+    cells
+        Cells along a side, one number a level, in any order; the cell size is one over it.
+    errors
+        The error of each level in one norm, not negative.
+    order, below, above
+        The expected order, and how far below and above it the whole interval may lie.
+    floor
+        Round-off floor of the quantity.
+    dt_halved
+        Error of the finest level with half the time step; None if nobody ran that, which leaves PASS open.
+
+    Returns
+    -------
+    Judgement
+        Its `reason` is a sentence.
+
+    Raises
+    ------
+    ValueError
+        For lists of different lengths, two levels of the same size, or a band without width.
+    """
+    from mpm_verify.cases.judging.order import Expectation, Level
+    from mpm_verify.cases.judging.order import judge as rule
+    from mpm_verify.reports.sentences.verdicts import reason
+
+    if len(cells) != len(errors):
+        raise ValueError(f"{len(cells)} cells and {len(errors)} errors: one error a level is needed")
+    levels = [Level(1 / n, (float(error),)) for n, error in zip(cells, errors, strict=True)]
+    found = rule(levels, Expectation(order, below, above), floor=floor, dt_halved=dt_halved)
+    return Judgement(str(found.outcome), reason(found.reason), found.observed, found.interval, found.local_orders)

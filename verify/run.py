@@ -1,0 +1,264 @@
+"""The one way from a study to an exit code: run what is not stored, judge, draw, export, print."""
+
+import os
+import shlex
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+if TYPE_CHECKING:
+    from mpm_verify.cases.harness.study import Study
+    from mpm_verify.reports.frames import Record
+
+SMALL = 4e7  # cost below which worker processes take longer to start than they save
+HOUR = 3600.0
+UPDATES = 3e6  # particle updates a second of one process, on the slow side
+PARTICLE, NODE, PROCESS = 500.0, 200.0, 3e8  # bytes: of a particle, of a node, of a process
+MOST_RUNS = 10_000
+USAGE, DEFECT = 2, 4  # exit codes beside those of cases/harness/analysis.py
+NOT_REPEATED = ("--out", "--junit", "--json", "--jobs", "--threads", "--summary", "--page", "--no-page", "--yes",
+                "--dry-run", "--vtk", "--no-vtk")  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Where and how a study is run and told. `show` prints it; the usual is that of the case."""
+
+    folder: Path
+    jobs: int | None = None
+    threads: int = 1
+    json_output: bool = False
+    junit: Path | None = None
+    summary: Path | None = None
+    page: bool | None = None  # None: unless JSON, JUnit or a summary are asked for
+    vtk: bool = False
+    dry_run: bool = False
+    yes: bool = False
+    show: "Callable[[Record, Path | None], None] | None" = None
+
+
+@contextmanager
+def usage() -> Iterator[None]:
+    """What is wrong with the input or the store becomes one line and exit code 2."""
+    from mpm_verify.cases.harness.runner import RunnerError
+    from mpm_verify.cases.harness.store import StoreError
+
+    try:
+        yield
+    except RunnerError as error:
+        raise Ended(str(error), DEFECT if error.defect else USAGE) from error
+    except (ValueError, StoreError) as error:
+        raise typer.TyperException(str(error)) from error
+    except MemoryError as error:
+        raise typer.TyperException("not enough memory; try fewer cells or --jobs 1; stored runs are kept") from error
+    except OSError as error:
+        raise typer.TyperException(f"{error.strerror or error}: {error.filename or ''}") from error
+
+
+class Ended(typer.TyperException):
+    """One line on standard error, with an exit code of its own."""
+
+    def __init__(self, message: str, code: int) -> None:
+        super().__init__(message)
+        self.exit_code = code
+
+
+def conduct(study: "Study[Any]", settings: Settings) -> int:
+    """Run, judge, draw, export, print; returns the exit code."""
+    with usage():
+        from mpm_verify.cases.harness.store import Store
+        from mpm_verify.reports.export.junit import writable
+        from mpm_verify.reports.frames import Record
+
+        check_count(settings.jobs, "--jobs")
+        check_count(settings.threads, "--threads")
+        writable(settings.junit, "--junit")
+        writable(settings.summary, "--summary")
+        store = Store(settings.folder, study.case)
+        if settings.dry_run:
+            return told_plan(study, store, settings)
+        with store.locked():  # before study.json is written: whoever is refused leaves the other's study as it is
+            store.create(study)
+            affordable(study, store, settings)
+            results = compute(study, store, settings)
+            record = Record(store, study, results, earlier=False)
+            page = draw(record, settings)
+        export(record, settings, page)
+    code: int = record.analysis.exit_code
+    return code
+
+
+def draw(record: "Record", settings: Settings) -> Path | None:
+    """The page of the study; None where none is asked for."""
+    wanted = settings.page
+    if wanted is None:
+        wanted = not (settings.json_output or settings.junit)
+    return page_of(record, settings.vtk) if wanted else None
+
+
+def page_of(record: "Record", vtk: bool = False, **chosen: Any) -> Path:
+    """Draw the page of the case: `page` of reports/pages/<case>.py, or what every case can have."""
+    name = f"mpm_verify.reports.pages.{record.study.case}"
+    module = import_module(name if find_spec(name) else "mpm_verify.reports.pages._plain")
+    path: Path = module.page(record, vtk=vtk, **chosen)
+    return path
+
+
+def export(record: "Record", settings: Settings, page: Path | None) -> None:
+    """Write what is asked for, and print."""
+    from mpm_verify.verify.terminal.output import printing
+
+    if settings.junit:
+        from mpm_verify.reports.export.junit import write_junit
+
+        write_junit(settings.junit, record)
+    if settings.summary:
+        from mpm_verify.reports.export.summary import markdown
+
+        with settings.summary.open("a", encoding="utf-8") as file:
+            file.write(markdown(record))
+    with printing():
+        if settings.json_output:
+            from mpm_verify.reports.export.document import document
+
+            typer.echo(document(record, page, more_of(record)))
+        elif settings.show:
+            settings.show(record, page)
+        else:
+            shown(record, page)
+
+
+def more_of(record: "Record") -> dict[str, Any]:
+    """What the JSON document of a case has beside that of any: `more` of reports/export/<case>.py, if it is there."""
+    name = f"mpm_verify.reports.export.{record.study.case}"
+    found: dict[str, Any] = import_module(name).more(record) if find_spec(name) else {}
+    return found
+
+
+def shown(record: "Record", page: Path | None) -> None:
+    """Print: `show` of verify/terminal/<case>.py, or verdicts and checks as every case has them."""
+    name = f"mpm_verify.verify.terminal.{record.study.case}"
+    if find_spec(name):
+        import_module(name).show(record, page)
+        return
+    from mpm_verify.verify.terminal import checks, table
+
+    if record.study.plans:
+        table.show(record, page)
+    if record.analysis.checks:
+        checks.show(record, page)
+
+
+def compute(study: "Study[Any]", store: Any, settings: Settings) -> dict[str, Any]:
+    """The Results of the study; in this process if there is little to do or one job is asked for."""
+    from mpm_verify.cases.harness.runner import InProcess, Ticker, cost, pending, process_pool, run_study
+    from mpm_verify.verify.terminal.progress import progress
+
+    waiting = pending(study, store)
+    jobs = min(jobs_of(settings), max(1, len(waiting)))
+    with progress(waiting, cost) as bar:
+        if jobs > 1 and sum(map(cost, waiting)) > SMALL:
+            with process_pool(jobs) as (executor, heard):
+                return run_study(study, store, executor, settings.threads, bar.done, lambda: bar.hear(heard()))
+        Ticker.tell = staticmethod(lambda news: bar.hear([news]))
+        return run_study(study, store, InProcess(), settings.threads, bar.done)
+
+
+def jobs_of(settings: Settings) -> int:
+    """Runs at a time."""
+    return settings.jobs or max(1, (os.cpu_count() or 1) // settings.threads)
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """What a study takes: runs to be done and stored, the largest run, memory in bytes, time in seconds."""
+
+    runs: int
+    stored: int
+    particles: int
+    memory: float
+    seconds: float
+
+    def __str__(self) -> str:
+        """One line."""
+        told = f"{self.runs} runs to be done, {self.stored} stored, up to {self.particles:,} particles"
+        return f"{told}, about {self.memory / 2**30:.1f} GB of memory and {duration(self.seconds)}"
+
+
+def estimate(study: "Study[Any]", store: Any, settings: Settings) -> Estimate:
+    """What is known before anything runs; times are those of a slow processor."""
+    from mpm_verify.cases.harness.runner import pending
+
+    waiting = pending(study, store)
+    every = {run.digest for run in study.runs}
+    jobs = min(jobs_of(settings), max(1, len(waiting)))
+    sizes = sorted((PROCESS + PARTICLE * run.particles + NODE * run.nodes for run in waiting), reverse=True)
+    seconds = sum(run.updates for run in waiting) / UPDATES / jobs
+    longest = max((run.updates for run in waiting), default=0.0) / UPDATES
+    most = max((run.particles for run in waiting), default=0)
+    return Estimate(len(waiting), len(every) - len(waiting), most, sum(sizes[:jobs]), max(seconds, longest))
+
+
+def affordable(study: "Study[Any]", store: Any, settings: Settings) -> None:
+    """Raises ValueError for a study that cannot be, or that takes hours and has no --yes."""
+    needed = estimate(study, store, settings)
+    there = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    if needed.memory > there:
+        raise ValueError(
+            f"{needed}: this machine has {there / 2**30:.1f} GB; take fewer cells or particles per cell, or --jobs 1"
+        )
+    if needed.seconds > HOUR and not settings.yes:
+        raise ValueError(f"{needed}: add --yes to run it, or --dry-run to see its runs")
+
+
+def told_plan(study: "Study[Any]", store: Any, settings: Settings) -> int:
+    """Print the runs of the study and what they take; nothing is run or written."""
+    from mpm_verify.verify.terminal.output import printing
+
+    needed = estimate(study, store, settings)
+    with printing():
+        for run in study.runs:
+            typer.echo(f"{'stored ' if store.get(run.digest) else 'to do  '} {run.digest}  {run}")
+        typer.echo(f"{study.name}: {needed}")
+    return 0
+
+
+def duration(seconds: float) -> str:
+    """A time in the unit that people use."""
+    for unit, size in (("days", 86400.0), ("hours", 3600.0), ("minutes", 60.0)):
+        if seconds >= 2 * size:
+            return f"{seconds / size:.0f} {unit}"
+    return f"{max(1, round(seconds))} s"
+
+
+def check_count(count: int | None, option: str) -> None:
+    """Raises ValueError unless it is left out or 1 and more."""
+    if count is not None and count < 1:
+        raise ValueError(f"{option} takes whole numbers from 1 on")
+
+
+def command() -> str:
+    """The command that repeats this one, without what says only where the result goes."""
+    kept, skip = [], False
+    for argument in sys.argv[1:]:
+        name, _, value = argument.partition("=")
+        if skip and not argument.startswith("--"):
+            skip = False
+        elif name in NOT_REPEATED:
+            skip = not value and name in ("--out", "--junit", "--jobs", "--threads", "--summary")
+        else:
+            kept.append(argument)
+            skip = False
+    return "verify " + shlex.join(kept)
+
+
+def named(study: "Study[Any]", out: Path | None) -> Path:
+    """Folder of a study: the one asked for, or the usual."""
+    return out or Path("results") / study.name

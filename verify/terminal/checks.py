@@ -1,0 +1,70 @@
+"""What checks print: each part with how many of its checks pass, and those that do not with their numbers."""
+
+from collections.abc import Sequence
+from math import isfinite, nan
+from pathlib import Path
+
+from mpm_verify.cases.harness.checks import Check
+from mpm_verify.reports.frames import Record
+from mpm_verify.reports.sentences import failures
+
+
+def show(record: Record, page: Path | None, lead: str = "") -> None:
+    """Print each part with how many of its checks pass, those that do not with their numbers, and the page's path."""
+    every = record.analysis.checks
+    from rich.table import Table
+    from rich.text import Text
+
+    from mpm_verify.verify.terminal.table import STYLES, Listened, where
+
+    out = Listened(highlight=False, soft_wrap=False)
+    if not out.is_terminal:
+        out.width = max(out.width, 100)
+    out.print(Text(f"\n{record.study.title}", "bold"))
+    table = Table(box=None, pad_edge=False, header_style="dim")
+    for name in ("", "part", "checks", "pass", "closest call"):
+        table.add_column(name, justify="right" if name in ("checks", "pass") else "left")
+    for group in dict.fromkeys(check.group for check in every):
+        checks = [check for check in every if check.group == group]
+        if checks:
+            missed = [check for check in checks if check.outcome != "PASS"]
+            worst = str(missed[0].outcome) if missed else "PASS"
+            table.add_row(
+                Text(worst, STYLES[worst]), group, str(len(checks)), str(len(checks) - len(missed)), closest(checks)
+            )
+    out.print(table)
+    for check in every:
+        if check.outcome != "PASS":
+            out.print(Text.assemble((str(check.outcome), STYLES[check.outcome]), f" {check.group}: {sentence(check)}"))
+    if lead:
+        out.print(Text(f"\n{lead}"))
+    where(out, page)
+
+
+def sentence(check: Check) -> str:
+    """What was found, and what it is held against."""
+    within = f" within {check.within:.3g}" if check.within else ""
+    way = f"{check.way} " if check.way.startswith("at") else ""
+    relative = " of it" if check.way == "relative" else ""
+    name = failures.check(check.name, check.failure)
+    return f"{name} is {check.found:.8g}, expected {way}{check.expected:.8g}{within}{relative} ({check.source})"
+
+
+def closest(checks: Sequence[Check]) -> str:
+    """The check that uses most of what it is allowed, and its numbers; nothing where no check allows anything."""
+    shares = {check: used(check) for check in checks}
+    bounded = [check for check in checks if isfinite(shares[check])]
+    if not bounded:
+        return ""
+    most = max(bounded, key=lambda check: shares[check])
+    if most.way.startswith("at"):
+        return f"{most.found:.2g}, {most.way} {most.expected:.2g}: {most.name}"
+    return f"{most.miss:.2g} of {most.within:.2g}: {most.name}"
+
+
+def used(check: Check) -> float:
+    """Share of what the check is allowed that it uses, above 1 where it fails; NaN where there is no such number."""
+    if check.within:
+        return check.miss / check.within
+    over, under = (check.found, check.expected) if check.way == "at most" else (check.expected, check.found)
+    return over / under if check.way.startswith("at") and min(over, under) > 0 else nan
