@@ -3,14 +3,14 @@
 from dataclasses import dataclass
 from typing import Any
 
-from mpm_verify.mms.blind_spots import ALWAYS, RULES, BlindSpot, Numbers
+from mpm_verify.mms.blind_spots import BlindSpot, Numbers, judge
 from mpm_verify.mms.manufacture import Manufactured
 from mpm_verify.mms.measure import Law, measure
 
 
 @dataclass(frozen=True)
 class Audit:
-    """Spots in a fixed order, what holds for every solution last; `numbers` as mms/measure.py describes them."""
+    """Blind spots in a fixed order, what holds for every solution last; `numbers` as mms/measure.py describes them."""
 
     spots: tuple[BlindSpot, ...]
     numbers: Numbers
@@ -27,9 +27,9 @@ class Audit:
 
 
 def audit(exact: Manufactured, solution: Any, law: Law) -> Audit:
-    """Audit of the fields `exact` that `solution` has in a body of `law`; takes some tenths of a second.
+    """Audit of the fields `exact` that `solution` has in a body of the material `law`; takes some tenths of a second.
 
     Nothing is known by the solution's name, so one of your own is audited like those of the library.
     """
     numbers = measure(exact, solution, law)
-    return Audit((*(rule(numbers) for rule in RULES), *ALWAYS), numbers)
+    return Audit(judge(numbers), numbers)

@@ -2,7 +2,7 @@
 
 from typing import Any, Protocol
 
-from mpm_verify.solver.plugins import MATERIALS, available, camel, load
+from mpm_verify.solver.plugins import MATERIALS, available, load
 
 
 class Energy(Protocol):
@@ -14,11 +14,10 @@ class Energy(Protocol):
 
 def check_energy(material: Any) -> None:
     """Raise ValueError for a law without an energy, such as those in rate form; it names the laws that have one."""
-    if hasattr(material, "energy"):
+    if material.energy is not None:
         return
-    kind = type(material).__name__
-    name = next((name for name in available(MATERIALS) if camel(name) == kind), kind)
-    others = ", ".join(name for name in available(MATERIALS) if hasattr(load(MATERIALS, name), "energy"))
+    others = ", ".join(name for name in available(MATERIALS) if load(MATERIALS, name).energy is not None)
     raise ValueError(
-        f"{name} has no energy, so no manufactured solution can be derived for it; the material must be one of {others}"
+        f"{material.name or type(material).__name__} has no energy, so no manufactured solution can be derived for it; "
+        f"the material must be one of {others}"
     )

@@ -1,6 +1,7 @@
 """What the solutions on a square have in common: the domain, the reference speed and the duration."""
 
 from dataclasses import dataclass
+from math import inf
 from typing import Any, ClassVar
 
 import numpy as np
@@ -39,6 +40,11 @@ class Square:
     def margin(self) -> float:
         """How far the body may move out of its reference square; the grid is wider by it."""
         return 0.0
+
+    @property
+    def amplitude(self) -> float:
+        """Largest displacement over the side, or angle, up to a factor of order one; inf where nothing is known."""
+        return inf
 
     @property
     def duration(self) -> float:

@@ -12,7 +12,7 @@ from mpm_verify.cases.harness.refinement import Series, collect
 from mpm_verify.cases.harness.store import Arrays, Store, case_of
 from mpm_verify.cases.harness.study import QuantityPlan, ResultRecord, Study
 from mpm_verify.cases.harness.verdicts import Finding
-from mpm_verify.reports.components import words
+from mpm_verify.reports import words
 from mpm_verify.solver.failure import FailureKind
 
 Run = Any  # of any case

@@ -1,13 +1,14 @@
-"""Elastic constants, validated once for every elastic law."""
+"""Elastic constants, validated once for every elastic material."""
 
 from dataclasses import dataclass
 from math import inf, sqrt
 
-from mpm_verify.solver.state import Floats, Particles
+from mpm_verify.solver.material_model import Material
+from mpm_verify.solver.state import Floats
 
 
 @dataclass(frozen=True)
-class Elastic:
+class Elastic(Material):
     """Young's modulus E and density rho0 above zero, Poisson's ratio -1 < nu < 0.5; raises ValueError otherwise.
 
     The defaults are those of the paper's section 2.1, free of units: lengths in L, speeds in sqrt(E / rho0) / 100.
@@ -33,14 +34,11 @@ class Elastic:
         """Lame's first constant."""
         return self.E * self.nu / ((1 + self.nu) * (1 - 2 * self.nu))
 
-    def start(self, particles: Particles) -> None:
-        """A law of F alone keeps nothing of the path."""
-
-    def wave_speed(self) -> float:
-        """Compression wave in the undeformed state, sqrt((lam + 2 mu) / rho0)."""
+    def wave_speed(self, s: float | None = None) -> float:
+        """Speed of the compression wave, sqrt((lam + 2 mu) / rho0), under any stress."""
         return sqrt((self.lam + 2 * self.mu) / self.rho0)
 
-    def stored(self, sigma: Floats) -> Floats:
+    def stored_energy(self, sigma: Floats) -> Floats:
         """Energy per volume (P,) that linear elasticity stores under the Cauchy stresses sigma (P,4)."""
         trace = sigma[:, :3].sum(axis=1)
         squares = (sigma[:, :3] ** 2).sum(axis=1) + 2 * sigma[:, 3] ** 2

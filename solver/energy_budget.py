@@ -16,15 +16,12 @@ of BLAS wait for the next one at full speed, and take the core from another run.
 """
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mpm_verify.solver._jit import F1, F2, f8, flag, kernel, nothing
+from mpm_verify.solver.model import Model, Observer
 from mpm_verify.solver.state import Floats, Particles
-
-if TYPE_CHECKING:
-    from mpm_verify.solver.model import Model
 
 TRANSFER, CONVECTION, WALLS, ON_GRID, GIVEN, LATE, IMPULSE, SUMS = 0, 1, 2, 3, 4, 5, 6, 8
 
@@ -88,7 +85,7 @@ def kicked(m, before, v):
 
 
 @dataclass
-class Budget:
+class Budget(Observer):
     """Sums since the start, for a body force `gravity` (2,) per mass and particles with the kinetic energy `before`.
 
     For update-stress-last and laws in rate form: the stress of a step's start and end is that of the forces.
@@ -101,16 +98,16 @@ class Budget:
     undamped: Floats = field(default_factory=lambda: np.zeros((0, 2)))
     v: Floats = field(default_factory=lambda: np.zeros((0, 2)))
 
-    def begin(self, model: "Model") -> None:
-        """With the forces of each step, before they are damped."""
+    def before_forces(self, model: Model) -> None:
+        """Add what lies between two steps, with forces that are not damped yet."""
         g = model.grid
         if not len(self.after):
             self.after, self.undamped = np.zeros((len(g.mass), 2)), np.zeros((len(g.mass), 2))
         dt = model.dt if model.steps else 0.0  # nothing lies between the start and the first step
         between_steps(g.mass, g.momentum_force, self.after, self.undamped, self.gravity, dt, model.cutoff, self.sums)
 
-    def end(self, model: "Model") -> None:
-        """After the equation of motion of each step."""
+    def after_motion(self, model: Model) -> None:
+        """Add what the step does on the grid."""
         g = model.grid
         in_step(
             g.mass, g.momentum_force, g.velocity_acceleration, self.undamped, self.after, model.walls.held,
@@ -119,12 +116,12 @@ class Budget:
         )  # fmt: skip
         self.v = model.particles.v.copy()
 
-    def took(self, model: "Model") -> None:
-        """After the particles have their velocities of each step."""
+    def after_particles(self, model: Model) -> None:
+        """Take off what the particles took of it."""
         p = model.particles
         self.sums[TRANSFER] -= kicked(p.m, self.v, p.v)
 
-    def terms(self, model: "Model") -> dict[str, float]:
+    def terms(self, model: Model) -> dict[str, float]:
         """Energies after a step: kinetic, on_grid, potential, work, damping, walls, transfer, convection.
 
         `potential` is zero where the particles have x = 0. The force of the last stress has not acted yet: the half of

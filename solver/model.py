@@ -1,45 +1,24 @@
-"""What a run holds between two steps, and how a run that cannot go on ends."""
+"""What a run holds between two steps: a body on its grid, the strategies of a step, and who watches it."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal, Protocol, get_args
+from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 
-from mpm_verify.solver.boundary import MASS_CUTOFF, Walls
+from mpm_verify.solver.context import Context
 from mpm_verify.solver.failure import FailureKind, RunFailed
-from mpm_verify.solver.slabs import Slabs
-from mpm_verify.solver.state import Grid, Ints, Particles
+from mpm_verify.solver.state import Particles
 from mpm_verify.solver.stress_update import check_stress_update
-from mpm_verify.solver.transfer import CHUNK
 from mpm_verify.solver.transfers._base import Transfer
 from mpm_verify.solver.transfers.flip import Flip
-from mpm_verify.solver.weights import Basis
 
 if TYPE_CHECKING:  # their kernels take seconds to compile, and most runs have neither
     from mpm_verify.solver.damping import Damping
-    from mpm_verify.solver.energy_budget import Budget
     from mpm_verify.solver.smoothing._base import Smoothing
 
 Load = Callable[[Particles, float], None]
 Deformation = Literal["linear", "exponential"]
-
-
-class Material(Protocol):
-    """A law: writes particles.sigma (and its history) once a step, from the new F."""
-
-    @property
-    def rho0(self) -> float:
-        """Density at reference."""
-
-    def start(self, particles: Particles) -> None:
-        """History at the start of a run."""
-
-    def update(self, particles: Particles, dt: float) -> None:
-        """Stress at the end of a step of length dt."""
-
-    def wave_speed(self) -> float:
-        """Speed of the fastest wave in the undeformed state."""
 
 
 @dataclass(frozen=True)
@@ -68,49 +47,55 @@ class Scheme:
         return 0.5 * dt if self.deformation == "exponential" else 0.0
 
 
-@dataclass
-class Model:
-    """All that one run holds. `time` is that of x, F and sigma; v is half a step behind it in a staggered run."""
+class Observer:
+    """Watches the steps of a run and changes nothing. Hooks that a subclass does not override are not called."""
 
-    grid: Grid
-    particles: Particles
-    basis: Basis
-    material: Material
-    walls: Walls
-    dt: float
+    def before_forces(self, model: "Model") -> None:
+        """Look at mass, momentum and force at the nodes, before damping and the equation of motion."""
+
+    def after_motion(self, model: "Model") -> None:
+        """Look at the nodes' new velocities and accelerations; the particles still have their old ones."""
+
+    def after_particles(self, model: "Model") -> None:
+        """Look at the particles' new velocities; their stress is still the old one, except with usf."""
+
+    def after_step(self, model: "Model") -> None:
+        """Look at the end of a step, `model.steps` counts it."""
+
+
+HOOKS = ("before_forces", "after_motion", "after_particles", "after_step")
+
+
+@dataclass
+class Model(Context):
+    """All that one run holds; v is half a step behind x, F and sigma in a staggered run."""
+
     scheme: Scheme = Scheme()
     damping: "Damping | None" = None
     smoothing: "Smoothing | None" = None
-    budget: "Budget | None" = None
-    steps: int = 0
     damped: float = 0.0  # energy that damping has taken so far
-    slabs: Slabs = field(default_factory=Slabs)
-    inverted: Ints = field(init=False)
-    cell_crossings: Ints = field(init=False)
+    hooks: dict[str, list[Callable[["Model"], None]]] = field(init=False)
 
     def __post_init__(self) -> None:
-        self.inverted = np.full(-(-len(self.particles) // CHUNK), -1)
-        self.cell_crossings = np.zeros(len(self.inverted), np.int64)
+        super().__post_init__()
+        self.hooks = {hook: [] for hook in HOOKS}
         if self.smoothing:
             self.smoothing.check(self.material)
         self.material.start(self.particles)
         self.slabs.sort(self.grid, self.particles)
         self.scheme.transfer.start(self)
 
-    @property
-    def crossings(self) -> int:
-        """Faces of cells that particles have passed so far."""
-        return int(self.cell_crossings.sum())
+    def watch(self, *observers: Observer) -> None:
+        """Call the observers' hooks from now on, after those that watch already."""
+        for observer in observers:
+            for hook, called in self.hooks.items():
+                if getattr(type(observer), hook) is not getattr(Observer, hook):
+                    called.append(getattr(observer, hook))
 
-    @property
-    def time(self) -> float:
-        """Steps times dt, so that no rounding piles up."""
-        return self.steps * self.dt
-
-    @property
-    def cutoff(self) -> float:
-        """Mass below which a node has no velocity."""
-        return MASS_CUTOFF * float(self.particles.m.max())
+    def tell(self, hook: str) -> None:
+        """Call what watches this part of the step."""
+        for look in self.hooks[hook]:
+            look(self)
 
 
 def check_time_step(model: Model) -> None:
@@ -119,13 +104,3 @@ def check_time_step(model: Model) -> None:
     limit = model.grid.dx / speed
     if model.dt > limit:
         raise RunFailed(FailureKind.UNSTABLE_STEP, numbers={"dt": model.dt, "limit": limit})
-
-
-def fail(model: Model, row: int, kind: FailureKind, numbers: dict[str, float] | None = None) -> None:
-    """Raise RunFailed for the particle in that row; what is not finite is named first, since it is the cause."""
-    p = model.particles
-    finite = all(np.isfinite(a[row]).all() for a in (p.x, p.v, p.F, p.sigma))
-    cell = tuple(model.grid.cell(p.x[row]).tolist()) if (np.abs(p.x[row]) < 1e9 * model.grid.dx).all() else None
-    if not finite:
-        kind, numbers = FailureKind.NOT_FINITE, None
-    raise RunFailed(kind, model.steps, int(p.id[row]), cell, numbers)

@@ -1,4 +1,4 @@
-"""What a law in rate form is: one kernel that responds to strain increments, and an objective rate around it."""
+"""What a material in rate form is: one kernel that responds to strain increments, and an objective rate around it."""
 
 from dataclasses import dataclass
 from functools import cache
@@ -7,23 +7,22 @@ from typing import ClassVar, cast
 import numpy as np
 
 from mpm_verify.solver._jit import Function
+from mpm_verify.solver.material_model import Material
 from mpm_verify.solver.objective import Rate, integrate
 from mpm_verify.solver.plugins import NEGATIVE_CONTROLS, RATES, available, load
 from mpm_verify.solver.state import Floats, Particles
 
 
 @dataclass(frozen=True)
-class RateMaterial:
+class RateMaterial(Material):
     """`rate`: the objective rate, a file of solver/rates; raises ValueError for another.
 
     A subclass has `respond`, a kernel of solver.objective.RESPOND, its `constants` (k,), and in `memory` the names of
-    what it keeps of the path,
-    one column of Particles.history each. Negative controls (solver/negative_controls) are taken as
-    a rate too: they are there to be seen failing.
+    what it keeps of the path, one column of Particles.history each. Negative controls (solver/negative_controls) are
+    taken as a rate too: they are there to be seen failing.
     """
 
     rate: str = "green_naghdi"
-    memory: ClassVar[tuple[str, ...]] = ()
     respond: ClassVar[Function]
 
     def __post_init__(self) -> None:
@@ -48,7 +47,7 @@ class RateMaterial:
         """Write particles.sigma, history and work, from F_old and the new F; the step's length does not matter.
 
         The strain is that of the way from F_old to `F_smoothed` (P,2,2), if it is given, and the rotation that of F.
-        Raises ValueError for particles that the law has not started: there is no F to go on from.
+        Raises ValueError for particles that the material has not started: there is no F to go on from.
         """
         frame, p = objective(self.rate), particles
         if p.F_old.shape[1:] != (4,) or p.history.shape[1:] != (len(self.memory),):

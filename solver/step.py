@@ -11,15 +11,17 @@ import numpy as np
 
 from mpm_verify.solver._jit import BLOCK
 from mpm_verify.solver.boundary import solve
+from mpm_verify.solver.context import fail
 from mpm_verify.solver.failure import FailureKind, RunFailed
-from mpm_verify.solver.model import Load, Material, Model, Scheme, check_time_step, fail
+from mpm_verify.solver.material_model import Material
+from mpm_verify.solver.model import Load, Model, Observer, Scheme, check_time_step
 from mpm_verify.solver.state import Floats, Ints
 from mpm_verify.solver.transfer import g2p, p2g
 
 if TYPE_CHECKING:
     from mpm_verify.solver.rate_material import RateMaterial
 
-__all__ = ["Load", "Material", "Model", "Scheme", "advance", "check_time_step"]
+__all__ = ["Load", "Material", "Model", "Observer", "Scheme", "advance", "check_time_step"]
 
 
 def advance(model: Model, load: Load) -> None:
@@ -27,6 +29,7 @@ def advance(model: Model, load: Load) -> None:
     load(model.particles, model.time)
     ORDERS[model.scheme.stress](model)
     model.steps += 1
+    model.tell("after_step")
 
 
 def stress_last(model: Model) -> None:
@@ -49,7 +52,7 @@ def stress_modified_last(model: Model) -> None:
     model.scheme.transfer.give(model, momentum)
     mapped, x = walled(model, momentum), model.particles.x.copy()
     model.scheme.transfer.filter(model, mapped)
-    advect(model, model.grid.velocity_acceleration, mapped)
+    advect(model, model.grid.velocity_acceleration, mapped, model.scheme.half(model.dt))
     model.basis.convect(model.particles, model.grid, model.dt)
     refuse_inverted(model)
     update_stress(model, x)
@@ -64,13 +67,13 @@ def stress_first(model: Model) -> None:
     model.walls.move(model.grid, model.time, model.dt)
     before = walled(model, model.grid.momentum_force, before=True)
     model.scheme.transfer.filter(model, before)
-    advect(model, rest, before)
+    advect(model, rest, before, model.scheme.half(model.dt))
     refuse_inverted(model)
     update_stress(model, model.particles.x)
     particles_to_grid(model)
     equation_of_motion(model)
     new_velocities(model)
-    advect(model, model.grid.velocity_acceleration, rest)
+    advect(model, model.grid.velocity_acceleration, rest, model.scheme.half(model.dt))
     model.basis.convect(model.particles, model.grid, model.dt)
     refuse_inverted(model)
 
@@ -100,7 +103,7 @@ def particles_to_grid(model: Model) -> None:
 
 
 def update_stress(model: Model, x: Floats) -> None:
-    """The law, on the strain of the step, or on what smoothing makes of it in the cells of x, where the step began."""
+    """Update the stress by the strain of the step, or by what smoothing makes of it in cells of x, where it began."""
     p = model.particles
     F_smoothed = model.smoothing.strain(model, x) if model.smoothing else None
     if F_smoothed is None:
@@ -113,8 +116,7 @@ def equation_of_motion(model: Model) -> None:
     """Velocities and accelerations at the nodes, and what the transfer makes of them."""
     g, w = model.grid, model.walls
     w.move(g, model.time, model.dt)
-    if model.budget:
-        model.budget.begin(model)
+    model.tell("before_forces")
     if model.damping:
         model.damped += model.damping.apply(g, w, model.dt, model.cutoff)
     solve(
@@ -129,8 +131,7 @@ def equation_of_motion(model: Model) -> None:
         model.cutoff,
         g.ny,
     )
-    if model.budget:
-        model.budget.end(model)
+    model.tell("after_motion")
     model.scheme.transfer.filter(model, g.velocity_acceleration)
     model.scheme.transfer.take(model)
 
@@ -145,8 +146,7 @@ def grid_to_particles(model: Model) -> None:
         model.inverted,
         model.cell_crossings,
     )  # fmt: skip
-    if model.budget:
-        model.budget.took(model)
+    model.tell("after_particles")
     model.basis.convect(p, g, model.dt)
     refuse_inverted(model)
 
@@ -157,6 +157,7 @@ def new_velocities(model: Model) -> None:
 
     p, share, taken = model.particles, model.scheme.transfer.share, collect(model, model.grid.velocity_acceleration)
     p.v[:] = share * (p.v + model.dt * taken[:, 2:]) + (1.0 - share) * taken[:, :2]
+    model.tell("after_particles")
 
 
 def refuse_inverted(model: Model) -> None:

@@ -19,9 +19,11 @@ by ny nodes.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import inf
 from typing import ClassVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mpm_verify.solver._jit import BLOCK, F1, I1, f8, flag, function_type, i8, kernel
 from mpm_verify.solver.failure import FailureKind
@@ -36,13 +38,28 @@ Place = Callable[[Floats], Floats]
 
 
 @dataclass(frozen=True)
+class Promise:
+    """How the error of u falls on refinement: with an `order`, or None; then it `stalls`, or else it grows.
+
+    `source`: who says so, before any run of ours.
+    """
+
+    order: float | None
+    stalls: bool = False
+    source: str = ""
+
+
+@dataclass(frozen=True)
 class Basis:
     """A basis is data plus one kernel; its file in solver/basis is its name. This one knows points alone."""
 
     support: ClassVar[int]  # K
-    order: ClassVar[float]  # expected order of the displacement; source in the docstring
+    order: ClassVar[float]  # of the displacement while no particle crosses a cell; source in the docstring
     fill: ClassVar[Callable[..., bool]]  # a kernel of signature FILL
     domain_size: ClassVar[int] = 0  # W
+    gradients_jump: ClassVar[bool] = False  # those of weights, where a particle crosses a cell
+    has_limit: ClassVar[bool] = False  # of the half diagonals of domains
+    limit = inf  # that limit, in cells
 
     def domain(self, layout: Layout, place: Place) -> Floats:
         """What the basis keeps of the domains, (P,W); `place` takes reference places (n,2) to those at the start."""
@@ -51,6 +68,11 @@ class Basis:
     def populate(self, layout: Layout, rho0: float, place: Place = lambda X: X) -> Particles:
         """Particles at the places of the layout, and their domains where `place` takes them."""
         return Particles(layout.X, rho0 * layout.V0, layout.V0, self.domain(layout, place))
+
+    @classmethod
+    def promises(cls, crossing: bool) -> Promise:
+        """Promise of a body between walls, with particles that cross cells or with none; by default it is the same."""
+        return Promise(cls.order)
 
     @staticmethod
     def corners(x: Floats, F: Floats, domain: Floats, dx: float) -> Floats | None:
@@ -61,6 +83,15 @@ class Basis:
     def refusal(F: Floats, domain: Floats, dx: float) -> Refusal:
         """Why the fill refuses a particle on the whole grid, and numbers; F (2,2) and domain (W,) are its own."""
         return FailureKind.OUTSIDE_GRID, {}
+
+    @staticmethod
+    def cut(F: Floats, domain: Floats, dx: float) -> NDArray[np.bool_]:
+        """Whether a half diagonal is longer than the limit (P,)."""
+        return np.zeros(len(F), dtype=bool)
+
+    def limited(self, limit: float) -> "Basis":
+        """The basis with half diagonals of domains no longer than `limit`, in cells, unless it has a limit."""
+        return self
 
     @staticmethod
     def convect(particles: Particles, grid: Grid, dt: float) -> None:

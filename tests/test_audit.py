@@ -11,10 +11,11 @@ import pytest
 import test_defects as defects
 from pydantic import TypeAdapter
 
-from mpm_verify.mms.audit import ALWAYS, Audit, audit
-from mpm_verify.mms.blind_spots import RULES, SEEN_BY
+from mpm_verify.mms.audit import Audit, audit
+from mpm_verify.mms.blind_spots import ALWAYS, RULES, SEEN_BY, SpotCode
 from mpm_verify.mms.manufacture import Manufactured, manufacture
 from mpm_verify.mms.measure import boundary
+from mpm_verify.reports.sentences.blind_spots import sentence
 from mpm_verify.solver.layout import annulus, rectangle
 from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS, available, create
 from mpm_verify.solver.state import Floats
@@ -48,7 +49,7 @@ class Case:
         self.law: Any = create("mpm_verify.solver.material", self.solution.material)
         self.exact: Manufactured = manufacture(self.solution, self.law, self.law.rho0)
         self.audit: Audit = audit(self.exact, self.solution, self.law)
-        self.blind = {spot.key for spot in self.audit.blind if spot not in ALWAYS}
+        self.blind = {str(spot.code) for spot in self.audit.blind if spot not in ALWAYS}
 
 
 case = cache(Case)
@@ -57,7 +58,7 @@ case = cache(Case)
 @pytest.mark.parametrize("text", BLIND)
 def test_what_is_found(text: str) -> None:
     assert case(text).blind == BLIND[text]
-    assert [spot.key for spot in case(text).audit.spots] == [*(rule.__name__ for rule in RULES), "orders", "constants"]
+    assert [spot.code for spot in case(text).audit.spots] == [*RULES, SpotCode.ORDERS, SpotCode.CONSTANTS]
 
 
 def test_every_solution_is_here() -> None:
@@ -97,11 +98,11 @@ def test_numbers(text: str, key: str, value: float) -> None:
 
 
 def test_sentences_have_the_numbers() -> None:
-    said = {spot.key: spot.sentence for spot in case("axis_aligned:phase=0.785").audit.spots}
+    said = {spot.code: sentence(spot) for spot in case("axis_aligned:phase=0.785").audit.spots}
     assert "71 % of the largest acceleration" in said["start"]
     assert "0.05 N cells (6.4 at 128)" in said["crossing"]
-    assert "without acceleration" in {s.key: s.sentence for s in case("axis_aligned").audit.spots}["start"]
-    assert "with 1 % of" in {s.key: s.sentence for s in case("axis_aligned:phase=0.01").audit.spots}["start"]
+    assert "without acceleration" in {s.code: sentence(s) for s in case("axis_aligned").audit.spots}["start"]
+    assert "with 1 % of" in {s.code: sentence(s) for s in case("axis_aligned:phase=0.01").audit.spots}["start"]
 
 
 @pytest.mark.parametrize(("key", "text"), [(key, text) for key, texts in SEEN_BY.items() for text in texts])
@@ -185,7 +186,7 @@ def test_free_edges_with_a_traction_are_told() -> None:
         for ring in (create(SOLUTIONS, "expanding_ring"),)
         for law in (create(MATERIALS, ring.material), create(MATERIALS, "neo_hookean"))
     )
-    said = [next(spot.sentence for spot in a.spots if spot.key == "walls") for a in (own, other)]
+    said = [next(sentence(spot) for spot in a.spots if spot.code == SpotCode.WALLS) for a in (own, other)]
     assert "no study of it converges" not in said[0]
     assert "no study of it converges" in said[1]
 

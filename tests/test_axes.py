@@ -15,14 +15,14 @@ from jsonschema import Draft202012Validator
 from mpm_verify.cases.mms.sweep import MOST, Sweep, build, offsets
 
 from mpm_verify.cases.harness.axes import crossed, level, middle, particle_axes, position_axes, time_axes
-from mpm_verify.cases.harness.refinement import collect
+from mpm_verify.cases.harness.refinement import MOST, collect, offsets
 from mpm_verify.cases.harness.runner import InProcess, pending, run_study
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.cases.harness.study import QuantityPlan, Study
 from mpm_verify.cases.harness.verdicts import findings, refinement
 from mpm_verify.cases.judging.order import Expectation, Outcome
 from mpm_verify.cases.mms.run import NORMS, QUANTITIES, Result, Run
-from mpm_verify.reports.components import words
+from mpm_verify.reports import words
 from mpm_verify.reports.export.document import SCHEMA
 from mpm_verify.reports.figures.style import look
 from mpm_verify.reports.frames import Record

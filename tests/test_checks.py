@@ -11,14 +11,21 @@ import numpy as np
 import pytest
 from mpm_verify.verify.examine import closest, conduct, document, sentence
 
-from mpm_verify.cases.harness.checks import Check, Examination, load, save
+from mpm_verify.cases.harness.checks import Check, Examination, Remark, load, save
 from mpm_verify.cases.harness.store import StoreError
 from mpm_verify.cases.judging.records import Outcome
 from mpm_verify.reports.components.examined import Section, checks_table, digits, render
 from mpm_verify.reports.components.page import Add
+from mpm_verify.reports.sentences.remarks import notes
 from mpm_verify.verify.main import main
 
 CURVES = {"run/block of 1 m": {"t": np.linspace(0, 1, 5), "xx": np.arange(5.0)}, "exact": {"t": np.zeros(0)}}
+FINDINGS = (
+    Remark("objectivity.missed", {"missed": 2, "checks": 30}),
+    Remark("element.against", {"source": "a sieve <&>"}),
+    Remark("objectivity.particles", {"largest": 0.123}, "words"),
+    Remark("element.order", {"order": 1.5}, "words"),
+)
 GOOD = Check("turn", "stress", 1.001, 1.0, "relative", "closed form", 0.01)
 BAD = Check("turn", "shear stress", 0.2, 0.1, "at most", "symmetry")
 LOST = Check("shear", "order", nan, 2.0, "absolute", "leading term", 0.1)
@@ -26,8 +33,8 @@ LOST = Check("shear", "order", nan, 2.0, "absolute", "leading term", 0.1)
 
 def examination(*checks: Check, name: str = "objectivity") -> Examination:
     return Examination(
-        name, "A turn", "verify objectivity", "What came out <&>.", checks, {"E": "5e5 Pa"},
-        {"words": ("One.", "Two.")}, {"python": "3"}, CURVES,
+        name, "A turn", "verify objectivity", FINDINGS, checks, {"E [Pa]": 5e5, "rate": "jaumann"},
+        {"E [Pa]": "objectivity.paper"}, {"python": "3"}, CURVES,
     )  # fmt: skip
 
 
@@ -96,7 +103,7 @@ def test_round_trip(tmp_path: Path) -> None:
 
 BROKEN = {
     "empty": ("examination.json", b""),
-    "cut off": ("examination.json", b'{"format": 1, "name": "objec'),
+    "cut off": ("examination.json", b'{"format": 2, "name": "objec'),
     "no object": ("examination.json", b"[1]"),
     "no text": ("examination.json", b"\xff\xfe\x00"),
     "another format": ("examination.json", b'{"format": 99}'),
@@ -164,7 +171,7 @@ def test_exit_codes_and_what_is_printed(
     out = capsys.readouterr().out
     words = " ".join(out.split())
     assert "A turn" in out
-    assert "What came out <&>." in words
+    assert "2 of 30 checks did not pass; they stand first. Errors are against: a sieve <&>." in words
     assert out.rstrip().endswith("report.html")
     assert ("FAIL turn: shear stress is 0.2, expected at most 0.1 (symmetry)" in words) == (BAD in checks)
     assert ("ERROR shear: order is nan, expected 2 within 0.1 (leading term)" in words) == (LOST in checks)
@@ -212,7 +219,8 @@ def test_the_page_names_what_missed_first(tmp_path: Path) -> None:
     run(tmp_path, GOOD, BAD, LOST)
     page = (tmp_path / "out" / "report.html").read_text()
     assert page.index("What missed") < page.index("The turn")
-    assert "What came out &lt;&amp;&gt;." in page
+    assert "Errors are against: a sieve &lt;&amp;&gt;." in page
+    assert "500000 (paper)" in page
     run(tmp_path, GOOD)
     assert "What missed" not in (tmp_path / "out" / "report.html").read_text()
 
@@ -251,7 +259,17 @@ def test_the_closest_call() -> None:
 
 
 def test_document_is_of_the_examination_alone(tmp_path: Path) -> None:
-    assert json.loads(document(examination(GOOD), tmp_path))["parameters"] == {"E": "5e5 Pa"}
+    told = json.loads(document(examination(GOOD), tmp_path))
+    assert told["parameters"] == {"E [Pa]": "500000 (paper)", "rate": "jaumann"}
+    assert told["findings"][0] == {"code": "objectivity.missed", "numbers": {"missed": 2, "checks": 30}, "group": ""}
+    assert told["lead"] == "2 of 30 checks did not pass; they stand first. Errors are against: a sieve <&>."
+
+
+def test_notes_are_those_of_a_group() -> None:
+    assert notes(examination(), "turn") == []
+    particles, order = notes(examination(), "words")
+    assert "shear stresses of up to 12 %" in particles
+    assert order == "The order is 1.50."
 
 
 # ---- the page again

@@ -211,7 +211,7 @@ def test_report_of_what(verify: Verify) -> None:
 
 
 @pytest.mark.parametrize("arguments", [["report", "study"], ["mms", "--cells", "8", "--ppc", "4", "--out", "study"]])
-@pytest.mark.parametrize(("text", "said"), [('{"for', "is broken"), ('{"format": 7}', "this version reads 1")])
+@pytest.mark.parametrize(("text", "said"), [('{"for', "is broken"), ('{"format": 7}', "this version reads 2")])
 def test_broken_study(verify: Verify, tmp_path: Path, arguments: list[str], text: str, said: str) -> None:
     """Neither command writes over a study.json that it cannot read."""
     fixtures.make(tmp_path / "study", ("cpdi",), largest=8)
@@ -229,7 +229,7 @@ def test_report_of_no_study_folder(verify: Verify, folder: str, tmp_path: Path) 
     assert content(tmp_path) == {"file": b""}
 
 
-@pytest.mark.parametrize(("text", "said"), [('{"for', "is broken"), ('{"format": 7}', "this version reads 1")])
+@pytest.mark.parametrize(("text", "said"), [('{"for', "is broken"), ('{"format": 7}', "this version reads 2")])
 def test_report_of_a_broken_result(verify: Verify, stored: Path, text: str, said: str) -> None:
     broken = sorted((stored / "runs").glob("*.json"))[3]
     broken.write_text(text)

@@ -6,9 +6,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mpm_verify.cases.column.claims import Claim, FinishedRun, beyond, claims, families, told
+from mpm_verify.cases.column.claims import Claim, ClaimCode, FinishedRun, beyond, claims, families
 from mpm_verify.cases.column.experiment import experiment
 from mpm_verify.cases.column.run import ColumnRun
+from mpm_verify.reports.sentences import column as words
 
 T = np.linspace(0, 1.4, 141)
 USUAL = ColumnRun()
@@ -30,9 +31,9 @@ def ran(
     )
 
 
-def said(family: list[FinishedRun], axis: str) -> dict[str, Claim]:
-    """Claims by their first five words."""
-    return {" ".join(claim.says.split()[:5]): claim for claim in claims(family, [axis])}
+def said(family: list[FinishedRun], axis: str) -> dict[ClaimCode, Claim]:
+    """Claims by their codes."""
+    return {claim.code: claim for claim in claims(family, [axis])}
 
 
 def test_the_experiment() -> None:
@@ -49,20 +50,18 @@ def test_the_experiment() -> None:
 def test_particles() -> None:
     held = said([ran(0.9, 0.08, ppc=1), ran(0.91, 0.15, ppc=4), ran(0.92, 0.17, ppc=9)], "ppc")
     assert [claim.reproduced for claim in held.values()] == [True] * 4
-    assert "0.900 m with 1 per cell" in held["Run-out is over-predicted whatever the"].found
+    assert "0.900 m with 1 per cell" in words.found(held[ClaimCode.FRONT_OVER])
     failed = said([ran(0.7, 0.2, ppc=1), ran(0.91, 0.1, ppc=9)], "ppc")
     assert [claim.reproduced for claim in failed.values()] == [False] * 4
-    assert said([ran(ppc=4), ran(ppc=9)], "ppc")["With one per cell the"].reproduced is None
+    assert said([ran(ppc=4), ran(ppc=9)], "ppc")[ClaimCode.HEIGHT_UNDER_WITH_ONE].reproduced is None
     weak = said([ran(0.7, 0.1, ppc=1, crowding=2.0), ran(0.91, 0.16, ppc=9)], "ppc")
-    assert (
-        "2.00 times with 1 per cell as their volume: those runs are weak"
-        in weak["Run-out is over-predicted whatever the"].found
-    )
+    told = "2.00 times with 1 per cell as their volume: those runs are weak"
+    assert told in words.found(weak[ClaimCode.FRONT_OVER])
     moving = said([ran(0.7, 0.14, ppc=1), ran(0.91, 0.16, ppc=9, creep=0.2)], "ppc")
-    assert moving["The final height rises with"].reproduced is None
+    assert moving[ClaimCode.HEIGHT_RISES].reproduced is None
     sinking = said([ran(0.7, 0.14, ppc=1, creep=0.2), ran(0.91, 0.16, ppc=9)], "ppc")
-    assert sinking["The final height rises with"].reproduced is True  # it can only become more so
-    assert "fell by up to 20.0 %" in moving["The final height rises with"].found
+    assert sinking[ClaimCode.HEIGHT_RISES].reproduced is True  # it can only become more so
+    assert "fell by up to 20.0 %" in words.found(moving[ClaimCode.HEIGHT_RISES])
 
 
 def test_damping() -> None:
@@ -71,8 +70,8 @@ def test_damping() -> None:
     family = [ran(0.9, kinetic=100, potential=80), ran(0.95, kinetic=99, potential=120, damping=0.1)]
     found = said(family, "damping")
     assert [claim.reproduced for claim in found.values()] == [False] * 4
-    assert "8.3 % of the initial potential energy" in found["Potential energy is not discernibly"].found
-    assert "up to 1 %" in found["Kinetic energy is markedly changed."].found
+    assert "8.3 % of the initial potential energy" in words.found(found[ClaimCode.POTENTIAL_KEPT])
+    assert "up to 1 %" in words.found(found[ClaimCode.KINETIC_CHANGED])
 
 
 def test_smoothing() -> None:
@@ -94,8 +93,8 @@ def test_law() -> None:
     far = said([plain, ran(1.0, law="ubcsand:Rf=0.9")], "law")
     assert [claim.reproduced for claim in far.values()] == [False, False, False, None, False]
     much = said([plain, ran(0.7, law="ubcsand")], "law")
-    assert much["UBCSAND is marginally stiffer: it"].reproduced is False  # by a sixth
-    assert "+19.0 %" in far["UBCSAND and Mohr-Coulomb end close"].found
+    assert much[ClaimCode.SAND_STIFFER].reproduced is False  # by a sixth
+    assert "+19.0 %" in words.found(far[ClaimCode.MATERIALS_CLOSE])
     assert not said([plain, ran(law="drucker_prager")], "law")
 
 
@@ -103,14 +102,19 @@ def test_families_differ_in_one_axis_alone() -> None:
     runs = [ran(ppc=ppc, damping=damping) for ppc in (4, 9) for damping in (0.0, 0.05)]
     assert [[one.run.ppc for one in family] for family in families(runs, "ppc")] == [[4, 9], [4, 9]]
     several = claims(runs, ["ppc", "damping"])
-    assert {claim.runs for claim in several} == {"no damping", "5 % damping", "4 per cell", "9 per cell"}
+    assert {words.listed(claim.shared) for claim in several} == {
+        "no damping",
+        "5 % damping",
+        "4 per cell",
+        "9 per cell",
+    }
     assert not claims([ran(ppc=4)], ["ppc"])  # one run is no family
     assert not claims([replace(one, run=replace(one.run, aspect=1.0)) for one in runs], ["ppc"])
     assert not claims([], ["ppc"])
 
 
 @pytest.mark.parametrize(
-    ("axis", "value", "words"),
+    ("axis", "value", "told"),
     [
         ("cells", 14, "14 cells wide"),
         ("damping", 0.05, "5 % damping"),
@@ -124,5 +128,5 @@ def test_families_differ_in_one_axis_alone() -> None:
         ("offset", (0.0, 0.25), "offset (0.0, 0.25)"),
     ],
 )
-def test_words_of_a_value(axis: str, value: Any, words: str) -> None:
-    assert told(axis, value) == words
+def test_words_of_a_value(axis: str, value: Any, told: str) -> None:
+    assert words.value(axis, value) == told

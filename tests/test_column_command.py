@@ -8,10 +8,12 @@ from xml.etree import ElementTree
 
 import pytest
 
-from mpm_verify.cases.column.exam import look
+from mpm_verify.cases.column.exam import ColumnRemark, look
 from mpm_verify.cases.column.run import ColumnRun
+from mpm_verify.cases.harness.checks import Remark
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.reports.pages.column import read
+from mpm_verify.reports.sentences.column import listed
 from mpm_verify.verify.main import main
 
 SMALL = ("--cells", "2", "--ppc", "4")
@@ -84,7 +86,7 @@ def test_json(verify: Any) -> None:
     ended = verify("column", *SMALL, "--duration", "0.1", "--json")
     assert (ended.code, ended.err) == (1, "")  # it does not rest in a tenth of a second
     told = json.loads(ended.out)
-    assert (told["version"], told["study"], told["outcome"]) == (1, "column", "FAIL")
+    assert (told["version"], told["study"], told["outcome"]) == (2, "column", "FAIL")
     (one,) = told["runs"]
     assert one["run"]["gate"] is None  # infinite
     assert one["values"]["rest"] is None
@@ -96,11 +98,13 @@ def test_what_a_sweep_says(swept: Path) -> None:
     """Every axis has its sentences and its refinement, in families."""
     collapse, _ = read(swept)
     assert len(collapse.ran) == 6
-    assert {claim.runs for claim in collapse.claims} == {
+    assert {listed(claim.shared) for claim in collapse.claims} == {
         "no damping", "10 % damping", "4 per cell", "9 per cell", "16 per cell",
     }  # fmt: skip
-    assert {(one.axis, one.runs) for one in collapse.refined} == {("ppc", "no damping"), ("ppc", "10 % damping")}
-    assert [name for name, _ in collapse.refined[0].levels] == ["16 per cell", "9 per cell", "4 per cell"]
+    assert [(one.axis, one.shared) for one in collapse.refined[::4]] == [
+        ("ppc", {"damping": 0.0}), ("ppc", {"damping": 0.1}),
+    ]  # fmt: skip
+    assert [value for value, _ in collapse.refined[0].levels] == [16, 9, 4]
     text = (swept / "report.html").read_text()
     for word in ("A small study", "What it is for.", "reproduced", "Richardson", "not reproduced"):
         assert word in text
@@ -136,7 +140,7 @@ def test_what_is_missing_is_run(verify: Any, swept: Path) -> None:
     (swept / "runs" / f"{run.digest}.json").unlink()
     assert len(look(store.study(), {}, store).ran) == 0
     collapse, _ = read(swept)
-    assert "1 are still to be done" in collapse.examination.lead
+    assert Remark(ColumnRemark.TO_DO, {"runs": 1}) in collapse.examination.findings
     assert collapse.examination.outcome == "FAIL"  # the study declares that six come to their end
     assert verify("sweep", str(swept.parent / "small.toml"), "--out", str(swept)).code == 0
     again = json.loads((swept / "runs" / f"{run.digest}.json").read_text())
@@ -151,7 +155,7 @@ def test_a_failed_run_is_a_result(verify: Any, tmp_path: Path) -> None:
     )  # fmt: skip
     ended = verify("sweep", "plain.toml")
     assert (ended.code, ended.err) == (0, "")
-    assert "1 of 2 runs came to their end. 1 could not go on" in ended.out
+    assert "1 of 2 runs came to their end. 1 failed" in ended.out
     assert "failed at" in ended.out
     table = Path("results/plain/tables/runs.csv").read_text()
     assert table.count("failed") == 1

@@ -4,17 +4,21 @@ import json
 import sys
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
-from mpm_verify.cases.element.checks import law_checks, run
+from mpm_verify.cases.element.checks import TABLE, law_checks, run
 from mpm_verify.cases.element.drawn import limit as limits
-from mpm_verify.cases.element.exam import beyond, examine, parameters, study, words
+from mpm_verify.cases.element.exam import ElementRemark, beyond, examine, notes, origins, parameters
 from mpm_verify.cases.element.paths import TESTS
-from mpm_verify.cases.harness.checks import load
+from mpm_verify.cases.element.study import study
 from mpm_verify.cases.judging.records import Outcome
 from mpm_verify.reports.figures.element import stress
+from mpm_verify.reports.sentences.remarks import lead, sentence
+from mpm_verify.reports.sentences.remarks import notes as told_notes
+from mpm_verify.reports.sentences.remarks import parameters as shown
 from mpm_verify.solver.material import mohr_coulomb, ubcsand
 from mpm_verify.solver.plugins import available, create
 from mpm_verify.verify.main import main
@@ -47,7 +51,7 @@ def test_other_parameters_are_held_against_closed_forms(name: str) -> None:
     checks = law_checks(create("mpm_verify.solver.material", name))
     assert checks
     assert not [check for check in checks if check.outcome is not Outcome.PASS]
-    assert not [check for check in checks if check.source == "reference table" and "ubcsand" in name]
+    assert not [check for check in checks if check.source == TABLE and "ubcsand" in name]
 
 
 def test_a_wrong_direction_of_flow_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -107,18 +111,46 @@ def test_a_path_of_ones_own_is_shown_and_not_judged(
     assert np.isfinite(curves["s"]).all()
 
 
+def test_what_was_read_and_what_has_no_effect_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """On the terminal, in JSON and on the page: columns, the largest strain, and a rate where nothing turns."""
+    path, out = tmp_path / "mine.csv", tmp_path / "out"
+    path.write_text("time;EXX [%];eyy [%];ezz [%];gxy [%]\n0;0;0;0;0\n1;0;-0,1;0;0\n")
+    words = ("material", "hypoelastic:rate=jaumann", "--path", str(path), "--steps", "4", "--out", str(out))
+    code, said, err = verify(monkeypatch, capsys, *words)
+    assert (code, err) == (0, "")
+    flat = " ".join(said.split())
+    notes = json.loads(verify(monkeypatch, capsys, *words, "--json")[1])["notes"]
+    page = (out / "report.html").read_text()
+    for line in (
+        "rate=jaumann changes nothing here: along a path of strains the law works in its own frame",
+        "exx, eyy, gxy are read of mine.csv; the largest strain is 0.001 (0.1 %).",
+        "ezz: zero in every row, as in plane strain",
+        "not used of mine.csv: time.",
+    ):
+        assert f"note: {line}" in flat
+        assert [note for note in notes if note.startswith(line)]
+        assert f"Note: {line}" in page
+    assert len(notes) == 4
+    code, said, err = verify(monkeypatch, capsys, "material", "hypoelastic", "--test", "isotropic", *words[4:])
+    assert "note:" not in said
+
+
 @pytest.mark.parametrize("name", ["mohr_coulomb", "drucker_prager"])
 def test_first_order_is_told_to_be_expected(name: str) -> None:
     """Where an order is told at all: of paths on which each step is exact there is none."""
     law, tests = create("mpm_verify.solver.material", name), [TESTS["shear_stress"], TESTS["isotropic"]]
-    assert "First order is expected" in examine(name, law, tests, 5e3, 10, "").lead
-    flat = examine(name, law, tests[1:], 5e3, 10, "").lead
-    assert "First order" not in flat
-    assert "1 is exact" in flat
+    assert "First order is expected" in lead(examine(name, law, tests, 5e3, 10, ""))
+    flat = examine(name, law, tests[1:], 5e3, 10, "")
+    assert ElementRemark.FIRST_ORDER not in {finding.code for finding in flat.findings}
+    assert "1 is exact" in lead(flat)
 
 
 def test_second_order_is_not_told_to_be_first() -> None:
-    assert "First order" not in examine("ubcsand", ubcsand.Ubcsand(), QUICK, 5e3, 10, "").lead
+    found = examine("ubcsand", ubcsand.Ubcsand(), QUICK, 5e3, 10, "")
+    assert {finding.code for finding in found.findings} >= {ElementRemark.TESTS, ElementRemark.ORDERS}
+    assert ElementRemark.FIRST_ORDER not in {finding.code for finding in found.findings}
 
 
 @pytest.mark.parametrize("name", ["mohr_coulomb", "drucker_prager", "mohr_coulomb:psi=20"])
@@ -139,18 +171,28 @@ def test_no_limit_is_drawn_where_none_is_known(name: str) -> None:
     assert not limits(create("mpm_verify.solver.material", name), 5e3)
 
 
+def told_of(law: Any) -> dict[str, str]:
+    """Parameters of a material as they are shown."""
+    return shown(Examination("m", "", "", (), (), parameters(law, 5e3, 10), origins(law)))
+
+
+def test_the_correlation_is_the_default() -> None:
+    """What is said of Rf is what it is."""
+    assert pytest.approx(1.1 * ubcsand.Ubcsand.N**-0.15, rel=1e-9) == ubcsand.Ubcsand.Rf
+
+
 def test_parameters_say_what_they_do() -> None:
     """Of UBCSAND: which have no effect, which are not in the paper, which is our reading."""
-    usual = parameters(ubcsand.Ubcsand(), 5e3, 10)
+    usual = told_of(ubcsand.Ubcsand())
     factors = [f"hfac{n}" for n in range(1, 7)]
     assert [usual[name].partition(" ")[2] for name in factors] == ["(no effect in primary loading)"] * 6
     assert usual["Rf"].startswith("0.7708770538 (not in the paper's Table 2; ")
     assert "1.1 N^-0.15" in usual["Rf"]
     assert usual["reversal"].startswith("0 (1 is our reading")
-    cyclic = parameters(ubcsand.Ubcsand(reversal=1.0), 5e3, 10)
+    cyclic = told_of(ubcsand.Ubcsand(reversal=1.0))
     told = [cyclic[name].partition(" ")[2] for name in factors]
     assert told == ["(in the stiffness after a reversal)"] * 2 + ["(no effect)"] * 4
-    assert parameters(create("mpm_verify.solver.material", "mohr_coulomb"), 5e3, 10)["phi"] == "31"
+    assert told_of(create("mpm_verify.solver.material", "mohr_coulomb"))["phi"] == "31"
 
 
 @pytest.mark.parametrize("reversal", [0.0, 1.0])
@@ -170,12 +212,12 @@ def test_what_is_told_of_the_factors_is_so(reversal: float) -> None:
 def test_how_often_zz_is_out_of_range_is_told() -> None:
     """All of isotropic compression, where zz lags behind; none of shear at constant vertical stress; UBCSAND alone."""
     law = ubcsand.Ubcsand()
-    notes = examine("ubcsand", law, [TESTS["isotropic"], TESTS["shear_stress"]], 5e3, 10, "").notes
-    assert "outside the range" in notes["Isotropic compression"][-1]
-    assert "in 100 % of the steps" in notes["Isotropic compression"][-1]
-    assert "zz is within the range" in notes["Simple shear at constant vertical stress"][-1]
+    found = examine("ubcsand", law, [TESTS["isotropic"], TESTS["shear_stress"]], 5e3, 10, "")
+    assert "in 100 % of the steps" in told_notes(found, "Isotropic compression")[-1]
+    assert "zz is within the range" in told_notes(found, "Simple shear at constant vertical stress")[-1]
     soil = create("mpm_verify.solver.material", "mohr_coulomb")
-    assert not [line for line in words(soil, study(soil, TESTS["isotropic"], 5e3, 10)) if "zz" in line]
+    codes = {remark.code for remark in notes(soil, study(soil, TESTS["isotropic"], 5e3, 10))}
+    assert codes == {ElementRemark.AGAINST, ElementRemark.ROUND_OFF}
 
 
 def test_the_share_counts_the_steps() -> None:
@@ -183,7 +225,8 @@ def test_the_share_counts_the_steps() -> None:
     law = ubcsand.Ubcsand()
     sx, sy, sz, tau = np.array([[1, 3, 5, 0], [1, 3, 0.5, 0], [1, 3, 3.5, 0], [2, 2, 2, 1.0]]).T
     one = replace(study(law, TESTS["isotropic"], 5e3, 1), curve={"s": sx, "sx": sx, "sy": sy, "sz": sz, "tau": tau})
-    assert " in 66.7 % of the steps" in beyond(law, one)
+    assert beyond(law, one) == pytest.approx(2 / 3)
+    assert " in 66.7 % of the steps" in sentence(notes(law, one)[-1])
 
 
 @pytest.mark.parametrize(
@@ -200,6 +243,8 @@ def test_the_share_counts_the_steps() -> None:
         (["neo_hookean", "--stress", "5"], "a law of F starts undeformed"),
         (["ubcsand", "--steps", "0"], "--steps takes whole numbers from 1"),
         (["ubcsand", "--path", "none.csv"], "none.csv: no such file"),
+        (["ubcsand", "--path", "none.csv", "--units", "pct"], "--units pct must be one of percent, fraction"),
+        (["ubcsand", "--units", "percent"], "--units belongs to --path FILE.csv"),
     ],
 )
 def test_what_is_wrong_is_one_line(

@@ -19,7 +19,7 @@ from mpm_verify.solver.state import Floats, Particles
 from mpm_verify.verify.main import main
 
 LAWS = available("mpm_verify.solver.material")
-ENERGETIC = [name for name in LAWS if hasattr(load("mpm_verify.solver.material", name), "energy")]
+ENERGETIC = [name for name in LAWS if load("mpm_verify.solver.material", name).energy is not None]
 ELASTIC = [name for name in LAWS if issubclass(load("mpm_verify.solver.material", name), Elastic)]
 HOOKEAN = [*ENERGETIC, "hypoelastic"]  # elastic from no stress on, however small it is
 SMALL = {"linear_elastic"}  # consistent with their energy to first order in the amplitude only, as they say

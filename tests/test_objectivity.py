@@ -11,14 +11,14 @@ from mpm_verify.cases.harness.checks import Examination, load, save
 from mpm_verify.cases.harness.runner import InProcess
 from mpm_verify.cases.judging.records import Outcome
 from mpm_verify.cases.objectivity import block as objectivity_block
-from mpm_verify.cases.objectivity import exam as objectivity
 from mpm_verify.cases.objectivity import rates as objectivity_kinematic
 from mpm_verify.cases.objectivity.block import PRINTED, REST, SMALL, blocks, misses
 from mpm_verify.cases.objectivity.exact import SIMPLE_SHEAR, rotated
 from mpm_verify.cases.objectivity.exam import examine
+from mpm_verify.cases.objectivity.findings import CONTROLS, INERTIA, MODERATE, ObjectivityRemark, lead, of_runs
 from mpm_verify.cases.objectivity.turning_block import Block, turn
-from mpm_verify.cases.objectivity.words import words
 from mpm_verify.reports.pages.objectivity import page
+from mpm_verify.reports.sentences.remarks import notes, sentence
 from mpm_verify.solver.plugins import NEGATIVE_CONTROLS, RATES, available
 
 COARSE = Block(cells=4)
@@ -86,10 +86,12 @@ def test_all_parts_come_together() -> None:
     for check in found.checks:
         if check.group != objectivity_block.GROUP:
             assert check.outcome is Outcome.PASS, check
-    assert set(found.notes) <= {*found.groups, "Inertial share"}
+    assert {finding.group for finding in found.findings} <= {"", *found.groups, INERTIA}
+    assert {finding.code for finding in found.findings} <= set(ObjectivityRemark)
     assert {name.partition("/")[2] for name in found.curves if name.startswith("control/")} == set(WRONG)
     assert {name.partition("/")[2] for name in found.curves if name.startswith("shear/")} == set(RIGHT)
-    assert found.parameters["grid"].startswith("4 cells")
+    assert found.parameters["cells along the block"] == 4
+    assert set(found.origins) <= set(found.parameters)
 
 
 def test_the_runs_of_the_coarse_block() -> None:
@@ -121,9 +123,14 @@ def test_a_run_that_ends_early_is_an_error(monkeypatch: pytest.MonkeyPatch) -> N
 def test_a_lead_counts_what_missed() -> None:
     checks = list(coarse().checks)
     passed = [check for check in checks if check.outcome is Outcome.PASS]
-    assert objectivity.lead(passed).startswith("The stress of the block turns with it")
+    curves = coarse().curves
+    turns = lead(passed, curves, ["strain_end"])
+    assert turns.code == ObjectivityRemark.TURNS
+    assert f"reaches {curves[f'run/{SMALL}']['xy'].max():.3f} of the vertical stress" in sentence(turns)
+    assert f"All {len(WRONG)} negative controls are seen" in sentence(turns)
     failed = replace(passed[0], found=np.nan)
-    assert objectivity.lead([failed, *passed[1:]]).startswith(f"1 of {len(passed)} checks did not pass")
+    missed = lead([failed, *passed[1:]], curves, [])
+    assert sentence(missed).startswith(f"1 of {len(passed)} checks did not pass")
 
 
 # ---- what it says
@@ -133,7 +140,7 @@ def test_the_words_about_shear_stresses_and_their_numbers() -> None:
     """Where the paper's sentence holds and where it cannot, with what these runs gave."""
     found = coarse()
     printed, small = found.curves[f"run/{PRINTED}"], found.curves[f"run/{SMALL}"]
-    text = " ".join(found.notes[objectivity_block.GROUP])
+    text = " ".join(notes(found, objectivity_block.GROUP))
     assert "That holds for the co-rotated components" in text
     assert "It cannot hold for the components in fixed axes" in text
     assert "rises to 0.286 of the vertical stress, at 45 degrees" in text
@@ -143,9 +150,21 @@ def test_the_words_about_shear_stresses_and_their_numbers() -> None:
     assert f"rises to {100 * own[:quarter].max():.2g} % of the vertical stress as the turn begins" in text
     assert f"is {100 * own[-quarter:].max():.2g} % at its end" in text
     assert own[-quarter:].max() < own[:quarter].max() < 0.1
-    share = " ".join(found.notes["Inertial share"])
-    assert "ω² L / g is 0.25" in share
-    assert f"{100 * (printed['own_yy'][printed['t'] > 1].mean() + 1):.2g} %" in share
+    inertia = " ".join(notes(found, INERTIA))
+    assert "ω² L / g is 0.25" in inertia
+    assert f"{100 * (printed['own_yy'][printed['t'] > 1].mean() + 1):.2g} %" in inertia
+
+
+def test_the_controls_that_figure_2_does_not_see() -> None:
+    """Named by what they miss there, with the orders that a turn with strain gives them."""
+    (unseen,) = [f for f in coarse().findings if f.code == ObjectivityRemark.CONTROLS]
+    assert set(unseen.numbers) == UNSEEN
+    assert list(unseen.numbers.values()) == pytest.approx([1, 1, 1], abs=0.1)
+    (printed,) = [f for f in coarse().findings if f.code == ObjectivityRemark.PRINTED]
+    assert printed.numbers["miss"] == coarse().curves["control/printed"]["kinematic"][0] > 0.1
+    text = notes(coarse(), CONTROLS)[0]
+    assert all(name in text for name in UNSEEN)
+    assert not [name for name in set(WRONG) - UNSEEN - {"stretched_frame"} if name in text]
 
 
 def test_words_take_their_numbers_from_the_runs() -> None:
@@ -159,19 +178,24 @@ def test_words_take_their_numbers_from_the_runs() -> None:
         "own_yy": 0 * t - 0.96,
         "shear": own,
     }
-    said = words(COARSE, curve, curve, curve)
-    first = " ".join(said[objectivity_block.GROUP])
+    found = of_runs(COARSE, curve, curve, curve)
+    first, inertia = (
+        " ".join(sentence(one) for one in found if one.group == group) for group in (objectivity_block.GROUP, INERTIA)
+    )
     assert "rises to 2.8 % of" in first
     assert "is 0.29 % at its end" in first
     assert "the small block reaches 0.250." in first
-    assert "misses its static value by 4 %" in " ".join(said["Inertial share"])
+    assert "misses its static value by 4 %" in inertia
 
 
 def test_simple_shear_as_the_words_say() -> None:
-    """Up to a shear of 0.5 the shear stresses agree within 5 %, and not much further."""
-    for gamma, together in ((0.25, True), (0.5, True), (1.0, False)):
+    """At a moderate shear the shear stresses agree within 5 %, as is told, and not much further."""
+    for gamma, together in ((0.5 * MODERATE, True), (MODERATE, True), (2 * MODERATE, False)):
         s12 = [float(SIMPLE_SHEAR[rate](np.array([gamma]))[0, 2]) for rate in RIGHT]
         assert (max(s12) / min(s12) < 1.05) == together
+        if gamma == MODERATE:
+            (told,) = [f for f in coarse().findings if f.code == ObjectivityRemark.NOT_UNIQUE]
+            assert told.numbers["spread"] == pytest.approx(max(s12) / min(s12) - 1)
 
 
 # ---- stored, and drawn again

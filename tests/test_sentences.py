@@ -397,7 +397,8 @@ def is_sentence(node: ast.AST) -> bool:
         isinstance(side, ast.Call) and name_of(side.func) == "str" for side in sides
     )
     sought = any(isinstance(op, ast.In | ast.NotIn) for op in node.ops)
-    return any(" " in text for text in texts) or bool(texts and sought and words)
+    phrases = any(" " in text.strip() for text in texts)
+    return phrases or bool(words) and sought and any(text.isalnum() or len(text) > 3 for text in texts)
 
 
 @pytest.mark.parametrize("floor", ["solver", "mms", "cases"])

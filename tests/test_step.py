@@ -231,7 +231,7 @@ def test_the_exponential_update(stress: str) -> None:
                 grid_to_particles(m)
             else:
                 motion = np.c_[(m.grid.nodes - 0.5) @ [[0, w], [-w, 0]], np.zeros((len(m.grid.nodes), 2))]
-                advect(m, motion, motion)
+                advect(m, motion, motion, m.scheme.half(m.dt))
         np.testing.assert_allclose(np.linalg.det(p.F), (1 + (w * m.dt) ** 4 / 4) ** steps, rtol=1e-11)
         errors.append(np.abs(p.F[0] - [[0, -1], [1, 0]]).max())
     np.testing.assert_allclose(np.log2(np.array(errors[:-1]) / errors[1:]), 2, atol=0.05)

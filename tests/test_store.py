@@ -207,13 +207,13 @@ def test_disk_full(store: Store, monkeypatch: pytest.MonkeyPatch, call: str) -> 
     ("text", "said"),
     [
         ("", "is broken and was left as it is"),
-        ('{"format": 1, "run": {"method"', "is broken"),
+        ('{"format": 2, "run": {"method"', "is broken"),
         ("[1, 2]", "is broken"),
         ("null", "is broken"),
-        ('{"format": 1}', "is broken"),
+        ('{"format": 2}', "is broken"),
         ("\x00\xff", "is broken"),
-        ('{"format": 7}', "has format 7, this version reads 1"),
-        ("{}", "has format None, this version reads 1"),
+        ('{"format": 7}', "has format 7, this version reads 2"),
+        ("{}", "has format None, this version reads 2"),
     ],
 )
 @pytest.mark.parametrize("name", ["study.json", "runs/{digest}.json"])

@@ -4,6 +4,7 @@ import ast
 import subprocess
 import sys
 from collections.abc import Iterator
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 from typing import Any
 
@@ -34,6 +35,7 @@ def imported(source: str) -> Iterator[str]:
         elif isinstance(node, ast.ImportFrom):
             assert node.level == 0, "relative imports hide the floor"
             yield node.module or ""
+            yield from (f"{node.module}.{alias.name}" for alias in node.names)
         elif isinstance(node, ast.Call) and "import_module" in ast.unparse(node.func):
             start = node.args[0].values[0] if isinstance(node.args[0], ast.JoinedStr) else node.args[0]
             if isinstance(start, ast.Constant):
@@ -79,7 +81,79 @@ def test_every_floor_is_looked_at() -> None:
     assert packages <= set(FLOORS), "a new package needs its floor here"
 
 
-NAMES = [(package, name) for package in PLUGINS for name in available(package)]
+Graph = dict[str, set[str]]
+
+
+def package() -> dict[str, str]:
+    """Sources of all modules by their names."""
+    names = (".".join(["mpm_verify", *file.relative_to(TOP).with_suffix("").parts]) for file in FILES)
+    return {name.removesuffix(".__init__"): file.read_text() for name, file in zip(names, FILES, strict=True)}
+
+
+def arrows(sources: dict[str, str]) -> Graph:
+    """Which modules each one imports, for types alone and within functions too."""
+    return {name: {other for other in imported(text) if other in sources} - {name} for name, text in sources.items()}
+
+
+def room(module: str) -> str:
+    """Floor and folder of a module, or floor and file where it lies in no folder."""
+    return ".".join(module.split(".")[1:3])
+
+
+def rooms(graph: Graph, floor: str) -> Graph:
+    """Which rooms of a floor each of its rooms imports."""
+    found: Graph = {}
+    for one, others in graph.items():
+        mine = found.setdefault(room(one), set()) if one.startswith(f"mpm_verify.{floor}.") else set()
+        mine |= {room(other) for other in others if other.startswith(f"mpm_verify.{floor}.")} - {room(one)}
+    return found
+
+
+def circle(graph: Graph) -> list[str]:
+    """A circle of imports, or nothing."""
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as error:
+        return list(error.args[1])
+    return []
+
+
+def test_no_import_goes_in_a_circle() -> None:
+    graph = arrows(package())
+    assert len(graph) > 150
+    assert sum(map(len, graph.values())) > 600
+    assert not circle(graph)
+
+
+@pytest.mark.parametrize("floor", ["cases", "reports", "verify"])
+def test_rooms_import_each_other_in_one_direction(floor: str) -> None:
+    graph = rooms(arrows(package()), floor)
+    assert len(graph) > 4
+    assert not circle(graph)
+
+
+def test_the_rooms_of_the_cases() -> None:
+    """Judging is below the harness, both are below the cases, and no case knows another; seven rooms at most."""
+    graph = rooms(arrows(package()), "cases")
+    assert {"cases.judging", "cases.harness", "cases.mms", "cases.column"} <= set(graph)
+    assert len(graph) <= 7
+    below = {"cases.judging": set(), "cases.harness": {"cases.judging"}}
+    assert {name: others - below.get(name, {"cases.judging", "cases.harness"}) for name, others in graph.items()} == {
+        name: set() for name in graph
+    }
+
+
+@pytest.mark.parametrize("back", ["if TYPE_CHECKING:\n    {}", "def f():\n    {}", "{}"])
+def test_a_circle_is_seen(back: str) -> None:
+    one, other = "mpm_verify.cases.mms.case", "mpm_verify.cases.harness.study"
+    sources = {one: f"from {other} import Run", other: back.format("from mpm_verify.cases.mms import case")}
+    assert set(circle(arrows(sources))) == {one, other}
+    assert set(circle(rooms(arrows(sources), "cases"))) == {"cases.mms", "cases.harness"}
+    sources[other] = ""
+    assert not circle(arrows(sources))
+
+
+NAMES = [(plugins, name) for plugins in PLUGINS for name in available(plugins)]
 
 
 @pytest.mark.parametrize(("package", "name"), NAMES)
@@ -103,6 +177,8 @@ def test_a_basis_has_the_one_signature(name: str) -> None:
     assert basis.fill.nopython_signatures[0].return_type == FILL.return_type
     assert isinstance(basis.support, int)
     assert 0 < basis.order < 10
+    assert basis.promises(crossing=False).order == basis.order
+    assert basis.promises(crossing=True).order in (None, basis.order)
 
 
 def one_signature(kernel: Any, signature: Any) -> None:
@@ -131,12 +207,18 @@ def test_a_rate_has_the_two_signatures(package: str, name: str) -> None:
 @pytest.mark.parametrize("name", available("mpm_verify.solver.material"))
 def test_a_law_is_of_one_of_two_forms(name: str) -> None:
     """A function of F with its energy, or in rate form with one kernel of the one signature."""
+    from mpm_verify.solver.material_model import Material
     from mpm_verify.solver.objective import RESPOND
-    from mpm_verify.solver.rate_material import RateMaterial
 
     law: Any = load("mpm_verify.solver.material", name)
-    assert issubclass(law, RateMaterial) != hasattr(law, "energy")
-    if issubclass(law, RateMaterial):
+    assert issubclass(law, Material)
+    assert law().name == name
+    assert (law.respond is None) != (law.energy is None)
+    assert (law().friction_angle is None) == (law().cohesion is None)
+    assert law.friction_angle.fget(law()) or not law.yields_in_plane
+    assert law().wave_speed() > 0
+    assert (law().wave_speed(1e3) != law().wave_speed()) == (law.moduli is not None)
+    if law.respond is not None:
         one_signature(law.respond, RESPOND)
         assert law().initial(np.zeros((3, 4))).shape == (3, len(law.memory))
         assert law().rate in available("mpm_verify.solver.rates")  # no negative control by default

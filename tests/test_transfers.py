@@ -502,7 +502,8 @@ def test_single_passes_give_the_bits_of_the_fused_one(transfer: str) -> None:
     p, share = single.particles, single.scheme.transfer.share
     taken = _passes.collect(single, single.grid.velocity_acceleration)
     p.v[:] = share * (p.v + single.dt * taken[:, 2:]) + (1 - share) * taken[:, :2]
-    _passes.advect(single, single.grid.velocity_acceleration, single.grid.velocity_acceleration)
+    motion, half = single.grid.velocity_acceleration, single.scheme.half(single.dt)
+    _passes.advect(single, motion, motion, half)
     for array in ("x", "v", "F"):
         np.testing.assert_array_equal(getattr(p, array), getattr(fused.particles, array))
     assert single.crossings == fused.crossings > 0

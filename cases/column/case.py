@@ -23,25 +23,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mpm_verify.cases.column.exam import examine
-from mpm_verify.cases.column.measure import Measure, final, wave
+from mpm_verify.cases.column.measure import Measure, due, final
 from mpm_verify.cases.column.run import ColumnResult, ColumnRun
 from mpm_verify.cases.column.start import stress
 from mpm_verify.cases.harness.environment import environment
 from mpm_verify.cases.harness.memory import forget_peak, peak_memory
+from mpm_verify.cases.harness.progress import Progress
 from mpm_verify.solver.boundary import Walls, box, moving
 from mpm_verify.solver.damping import Damping
-from mpm_verify.solver.energy_budget import Budget, kinetic
 from mpm_verify.solver.failure import RunFailed
 from mpm_verify.solver.layout import rectangle
 from mpm_verify.solver.plugins import MATERIALS, METHODS, SMOOTHINGS, TRANSFERS, create
-from mpm_verify.solver.rate_material import RateMaterial
 from mpm_verify.solver.state import Floats, Grid, Particles
-from mpm_verify.solver.step import Model, Scheme, advance, check_time_step
+from mpm_verify.solver.step import Material, Model, Observer, Scheme, advance, check_time_step
+from mpm_verify.solver.weights import Basis
 
 __all__ = ["Result", "Run", "check", "examine", "execute"]
 
 Run, Result = ColumnRun, ColumnResult
-LOOKS, FRAMES, SNAPSHOTS = 200, 57, 8  # of a run: rows, places of particles, all fields
+FRAMES, SNAPSHOTS = 57, 8  # of a run: positions of particles, all fields
 DRAWN = 20_000  # particles of a frame
 MOST = 1e8  # steps
 
@@ -53,40 +53,37 @@ def title(runs: Sequence[ColumnRun]) -> str:
 
 def setup(run: ColumnRun) -> tuple[Model, int]:
     """The column before it moves, and the number of steps. Raises ValueError for what does not fit together."""
-    law, basis = law_of(run), basis_of(run)
+    material, basis = material_of(run), basis_of(run)
     dx = run.width / run.cells
     across, up = round(run.channel * run.cells), ceil((run.aspect + 1) * run.cells)
     grid = Grid(dx, np.zeros(2), dx * np.array([across, up]))
     low = np.array([grid.upper[0] - run.width if run.mirror else 0.0, 0.0])
     layout = rectangle(low, low + np.array([run.width, run.height]), dx, run.ppc, run.offset)
-    particles = basis.populate(layout, law.rho0)
+    particles = basis.populate(layout, material.rho0)
     gravity = np.array([0.0, -run.g])
     particles.b[:] = gravity
-    stress(particles, law, run.start, run.height, run.g)
-    steps = steps_of(run, law)
+    stress(particles, material, run.start, run.height, run.g)
+    steps = steps_of(run, material)
     dt = run.duration / steps
     if run.start == "none":
         particles.v[:] = -0.5 * dt * gravity  # that of t = -dt/2, as nothing but gravity acts at t = 0
     model = Model(
-        grid, particles, basis, law, walls(run, grid), dt,
+        grid, particles, basis, material, walls(run, grid), dt,
         Scheme(create(TRANSFERS, run.transfer), deformation=run.deformation),  # type: ignore[arg-type]
         Damping(run.damping, run.damping_kind) if run.damping else None,  # type: ignore[arg-type]
         None if run.smoothing == "none" else create(SMOOTHINGS, run.smoothing),
-        Budget(gravity, kinetic(particles)),
     )  # fmt: skip
     return model, steps
 
 
-def steps_of(run: ColumnRun, law: Any) -> int:
+def steps_of(run: ColumnRun, material: Material) -> int:
     """Number of steps. Raises ValueError for more than can be done.
 
-    A law that stiffens with s is taken at three times the weight of the column, or at its own bound if that is more:
-    where sand strikes the floor s is some nine times the weight for moments, and the Courant number then 1.5 times
-    what was asked for.
+    A material that stiffens with s is taken at three times the weight of the column, or at its own bound if that is
+    more: where sand strikes the floor s is some nine times the weight for moments, and the Courant number then 1.5
+    times what was asked for.
     """
-    c = law.wave_speed()
-    if hasattr(law, "moduli"):
-        c = max(c, wave(law, 3 * law.rho0 * run.g * run.height))
+    c = max(material.wave_speed(), material.wave_speed(3 * material.rho0 * run.g * run.height))
     count = run.duration / (run.courant * run.width / run.cells / c) * (1 - 1e-12)
     if not count < MOST:
         raise ValueError(f"{count:.3g} steps would be needed, and {MOST:.0e} is the most; mind E, rho0 and courant")
@@ -97,27 +94,26 @@ def steps_of(run: ColumnRun, law: Any) -> int:
 def check(runs: Sequence[ColumnRun]) -> None:
     """Raises ValueError for what no column can have: by setting up a small one of each kind."""
     for run in runs:
-        steps_of(run, law_of(run))
+        steps_of(run, material_of(run))
     kinds = (replace(run, cells=2, ppc=4, aspect=7.0, channel=18.0, courant=0.4, duration=1e-3) for run in runs)
     for kind in dict.fromkeys(kinds):
         setup(kind)
 
 
-def law_of(run: ColumnRun) -> Any:
-    """The law, with void-strain memory where it has one. Raises ValueError for one that the column cannot have."""
-    law = create(MATERIALS, run.material)
-    if not isinstance(law, RateMaterial):
+def material_of(run: ColumnRun) -> Material:
+    """The material, with void-strain memory where it has one. Raises ValueError for one that no column can have."""
+    material: Any = create(MATERIALS, run.material)
+    if material.respond is None:
         raise ValueError(f"the column must have a law in rate form, with a memory of its path, not {run.material}")
-    if run.void and hasattr(law, "void") and not law.c:  # type: ignore[attr-defined]
-        law = replace(law, void=1.0)  # type: ignore[call-arg]
-    return law
+    parts = run.void and "void" in material.memory and not material.cohesion
+    made: Material = replace(material, void=1.0) if parts else material
+    return made
 
 
-def basis_of(run: ColumnRun) -> Any:
+def basis_of(run: ColumnRun) -> Basis:
     """The basis, with the limit of the run unless it has its own; no domain is cut before it is stretched."""
-    basis = create(METHODS, run.method)
-    own = "limit" in run.method or not hasattr(basis, "limit")
-    return basis if own else replace(basis, limit=max(run.limit, sqrt(0.5 / run.ppc) * (1 + 1e-9)))
+    basis: Basis = create(METHODS, run.method)
+    return basis.limited(max(run.limit, sqrt(0.5 / run.ppc) * (1 + 1e-9)))
 
 
 def walls(run: ColumnRun, grid: Grid) -> Walls:
@@ -156,16 +152,13 @@ def execute(run: ColumnRun, tick: Callable[[float], None] = lambda share: None) 
     model, steps = setup(run)
     measure, failure = Measure(run, model), None
     kept = Kept(model, steps)
+    model.watch(measure, kept, Progress(tick, steps))
     started, used = time.perf_counter(), time.process_time()
     try:
         measure.look(model)
         check_time_step(model)
-        for step in range(1, steps + 1):
+        for _ in range(steps):
             advance(model, gravity)
-            if due(step, steps, LOOKS):
-                measure.look(model)
-            kept.take(model, step)
-            tick(step / steps)
     except RunFailed as ended:
         failure = ended.failure
     wall, cpu = time.perf_counter() - started, time.process_time() - used
@@ -184,28 +177,24 @@ def execute(run: ColumnRun, tick: Callable[[float], None] = lambda share: None) 
         peak_memory_mb=peak_memory(),
         failure=failure,
         environment=environment(),
-        parameters=asdict(model.material) | {"domain limit": getattr(model.basis, "limit", inf)},  # type: ignore[call-overload]
+        parameters=asdict(model.material) | {"domain limit": model.basis.limit},  # type: ignore[call-overload]
     )
     return result, arrays
 
 
-def due(step: int, steps: int, times: int) -> bool:
-    """Whether this step is one of so many, evenly spread, the last one among them."""
-    return step * times // steps != (step - 1) * times // steps
-
-
-class Kept:
-    """Places of particles for an animation, and all their fields at a few times, in the initial order, float32."""
+class Kept(Observer):
+    """Positions of particles for an animation, and all their fields at a few times, in the initial order, float32."""
 
     def __init__(self, model: Model, steps: int) -> None:
         self.steps, self.times = steps, ([], [])  # type: tuple[int, tuple[list[float], list[float]]]
         self.some = slice(None, None, -(-len(model.particles) // DRAWN))
         self.frames: list[Any] = []
         self.fields: dict[str, list[Any]] = {}
-        self.take(model, 0)
+        self.after_step(model)
 
-    def take(self, model: Model, step: int) -> None:
-        """What is due after this step."""
+    def after_step(self, model: Model) -> None:
+        """Keep what is due."""
+        step = model.steps
         if step == 0 or due(step, self.steps, FRAMES - 1):
             self.times[0].append(model.time)
             self.frames.append(model.particles.in_initial_order("x")[self.some].astype(np.float32))
@@ -225,14 +214,13 @@ def fields(model: Model) -> dict[str, Any]:
     """Fields of the particles in the initial order, float32: x, v, F, sigma, m, J, corners, the law's memory by name,
     and where smoothing gives the forces another stress, that as sigma_smoothed."""
     p = model.particles
-    found = {name: getattr(p, name) for name in ("x", "v", "F", "sigma", "m", "J")}
+    found = {"x": p.x, "v": p.v, "F": p.F, "sigma": p.sigma, "m": p.m, "J": p.J}
     if p.sigma_smoothed.size:
         found["sigma_smoothed"] = p.sigma_smoothed
     corners = model.basis.corners(p.x, p.F, p.domain, model.grid.dx)
     if corners is not None:
         found["corners"] = corners
-    memory: Any = getattr(model.material, "memory", ())
-    found |= {name: p.history[:, place] for place, name in enumerate(memory)}
+    found |= {name: p.history[:, place] for place, name in enumerate(model.material.memory)}
     place = np.empty(len(p), np.int64)
     place[p.id] = np.arange(len(p))
     return {name: values[place].astype(np.float32) for name, values in found.items()}

@@ -11,24 +11,23 @@ its momentum is not counted. All these are told, and not judged. How many runs c
 
 from collections.abc import Sequence
 from math import sqrt
+from typing import Any
 
-from mpm_verify.cases.column.claims import FinishedRun, shared
+from mpm_verify.cases.column.claims import FinishedRun, values
 from mpm_verify.cases.column.run import AT_REST, ColumnRun, ColumnStudy
 from mpm_verify.cases.harness.checks import Check, Way
+from mpm_verify.solver.plugins import METHODS, SMOOTHINGS, TRANSFERS, create, load, split
 
 SHARE = "over the potential energy at first"
 BUDGET, DRIFT, BACK = 0.01, 1e-9, 1e-3
 MASS, STABLE = 1e-12, 0.95
-JUMPS = "mpm"  # method whose weights have gradients that jump
 LONG = 0.7  # cells, half diagonal of a domain
-ADJOINT = ("none", "volumetric", "deviatoric", "full")  # rates and stresses by one projector onto cells
-FILTERS = "fmpm"  # transfer whose walls are not counted
 
 
 def checks(study: ColumnStudy, ran: Sequence[FinishedRun]) -> list[Check]:
     """Of the runs that came to their end."""
     smooth = [one for one in ran if holds_work(one.run)]
-    counted = [one for one in ran if name_of(one.run.transfer) != FILTERS]
+    counted = [one for one in ran if not plugin(TRANSFERS, one.run.transfer).filters_walls]
     asked: list[tuple[str, Sequence[FinishedRun], list[float], float, str]] = [
         (f"energy budget, largest residual {SHARE}", ran, [one.values["unbalanced"] for one in ran], BUDGET,
          "every term is measured apart"),
@@ -47,27 +46,31 @@ def checks(study: ColumnStudy, ran: Sequence[FinishedRun]) -> list[Check]:
     found = [Check("Runs", f"runs of {len(study.runs)} that came to rest", float(rested), float(study.finish),
                    "at least", "declared by the study")]  # fmt: skip
     way: Way = "at most"
-    for name, runs, values, bound, source in asked:
+    for name, runs, numbers, bound, source in asked:
         if runs:
-            place = max(range(len(runs)), key=lambda k: values[k])
-            found.append(Check("Invariants", name + named(study, runs[place].run), values[place], bound, way, source))
+            worst = max(range(len(runs)), key=lambda k: numbers[k])
+            found.append(Check("Invariants", name + named(study, runs[worst].run), numbers[worst], bound, way, source))
     return found
 
 
 def holds_work(run: ColumnRun) -> bool:
     """Whether the work of its forces is asked to be that of its stress."""
-    long = name_of(run.method) == "cpdi" and run.limit > LONG
-    return name_of(run.method) != JUMPS and not long and run.smoothing in ADJOINT
+    basis = plugin(METHODS, run.method)
+    long = basis.has_limit and run.limit > LONG
+    adjoint = run.smoothing == "none" or create(SMOOTHINGS, run.smoothing).adjoint
+    return not basis.gradients_jump and not long and adjoint
 
 
-def name_of(specification: str) -> str:
-    """Without its parameters."""
-    return specification.partition(":")[0]
+def plugin(package: str, specification: str) -> Any:
+    """The class of a plug-in, without its parameters."""
+    return load(package, split(specification)[0])
 
 
 def named(study: ColumnStudy, run: ColumnRun) -> str:
     """Which run it is, where there are several."""
-    return f" ({shared(run, study.axes)})" if len(study.runs) > 1 and study.axes else ""
+    if len(study.runs) < 2 or not study.axes:
+        return ""
+    return f" ({', '.join(f'{axis}={value}' for axis, value in values(run, study.axes).items())})"
 
 
 def lost(one: FinishedRun) -> float:

@@ -1,19 +1,19 @@
-"""What the paper says of the column, each sentence held against our runs: reproduced or not, with the numbers.
+"""What the paper says of the column, as claims that are held against our runs: reproduced or not, with the numbers.
 
-A sentence is about one axis: particles per cell, damping, smoothing, law. It is held against runs that differ in that
+A claim is about one axis: particles per cell, damping, smoothing, material. It is held against runs that differ in that
 axis alone. What "little" and "close" mean is said here, since the paper gives no numbers; None is the answer where our
-runs, or what is known of the experiment, cannot tell.
+runs, or what is known of the experiment, cannot tell. The sentences are in reports/sentences/column.py.
 """
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
 from itertools import pairwise
-from math import inf
 from typing import Any
 
 import numpy as np
 
-from mpm_verify.cases.column.experiment import Experiment, experiment
+from mpm_verify.cases.column.experiment import Band, Experiment, experiment
 from mpm_verify.cases.column.run import ColumnRun
 from mpm_verify.solver.state import Floats
 
@@ -21,8 +21,30 @@ LITTLE = 0.01  # of the potential energy there was: what can be seen on a figure
 MARKED = 0.10  # of the largest kinetic energy
 CROWDED = 1.2  # from which crowding on a heap is too small for its material
 CLOSE = 0.05  # of the front
-SCATTER = 0.01  # of the front: what it owes to the places of particles in their cells (study offsets)
+SCATTER = 0.01  # of the front: what it owes to the positions of particles in their cells (study offsets)
 NEAR = 0.10  # of the experiment's band
+EARLY = 0.17  # s: until then the paper's materials differ
+
+
+class ClaimCode(StrEnum):
+    """A sentence of the paper, by the axis that it is about."""
+
+    FRONT_OVER = "front_over"  # ppc, Figure 4
+    HEIGHT_RISES = "height_rises"
+    HEIGHT_UNDER_WITH_ONE = "height_under_with_one"
+    HEIGHT_NEAR_WITH_MORE = "height_near_with_more"
+    FRONT_FALLS = "front_falls"  # damping, Figures 5 and 6
+    FRONT_CLOSER = "front_closer"
+    POTENTIAL_KEPT = "potential_kept"
+    KINETIC_CHANGED = "kinetic_changed"
+    VOLUMETRIC_FRONT = "volumetric_front"  # smoothing, Figure 7
+    VOLUMETRIC_HEIGHT = "volumetric_height"
+    DEVIATORIC_FRONT = "deviatoric_front"
+    MATERIALS_CLOSE = "materials_close"  # law, Figure 8
+    SAND_STIFFER = "sand_stiffer"
+    BOTH_NEAR = "both_near"
+    SAND_EARLY = "sand_early"
+    SAND_LATE = "sand_late"
 
 
 @dataclass(frozen=True)
@@ -45,24 +67,41 @@ class FinishedRun:
 
 
 @dataclass(frozen=True)
-class Claim:
-    """A sentence of the paper, what was found, and whether that is what it says."""
+class Compared:
+    """A run that a claim compares: its value on the axis, its front and its height at the end [m], its crowding."""
 
-    says: str
+    value: Any
+    front: float
+    height: float
+    crowding: float
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A sentence of the paper, whether runs reproduce it, and with what numbers.
+
+    `runs`: those that are compared, in the order of the sentence; `known`: the experiment; `numbers`: what was measured
+    beside fronts and heights, and the bounds it was held against; `shared`: values of the runs on the other axes.
+    """
+
+    code: ClaimCode
+    axis: str
     reproduced: bool | None
-    found: str
-    runs: str = ""  # what the runs share, where a study has several families of them
+    runs: tuple[Compared, ...]
+    known: Experiment
+    numbers: dict[str, float] = field(default_factory=dict)
+    shared: dict[str, Any] = field(default_factory=dict)
 
 
 def claims(ran: Sequence[FinishedRun], axes: Sequence[str]) -> list[Claim]:
-    """Of every axis that the paper speaks of, one list a family of runs."""
+    """Claims on every axis that the paper speaks of, one list a family of runs."""
     found = []
     for axis in axes:
         for family in families(ran, axis):
             known = experiment(family[0].run)
-            words = shared(family[0].run, [other for other in axes if other != axis])
+            shared = values(family[0].run, [other for other in axes if other != axis])
             if axis in SPEAK and known and len(family) > 1:
-                found += [replace(claim, runs=words) for claim in SPEAK[axis](family, known)]
+                found += [replace(claim, shared=shared) for claim in SPEAK[axis](family, known)]
     return found
 
 
@@ -77,90 +116,42 @@ def families(ran: Sequence[FinishedRun], axis: str) -> list[list[FinishedRun]]:
     return list(found.values())
 
 
-def shared(run: ColumnRun, axes: Iterable[str]) -> str:
-    """What a run has on these axes, in words."""
-    return ", ".join(told(axis, getattr(run, axis)) for axis in axes)
+def values(run: ColumnRun, axes: Sequence[str]) -> dict[str, Any]:
+    """What a run has on these axes."""
+    return {axis: getattr(run, axis) for axis in axes}
 
 
-NOTHING = {
-    ("smoothing", "none"): "no smoothing", ("start", "none"): "no stress at first", ("limit", inf): "no limit",
-    ("gate", inf): "no gate", ("damping", 0.0): "no damping",
-}  # fmt: skip
+def compared(axis: str, *runs: FinishedRun) -> tuple[Compared, ...]:
+    """Runs as a claim on the axis tells them."""
+    return tuple(Compared(getattr(one.run, axis), one.front, one.height, one.values["crowding"]) for one in runs)
 
 
-def told(axis: str, value: Any) -> str:
-    """A value of an axis in words."""
-    if (axis, value) in NOTHING:
-        return NOTHING[axis, value]
-    if isinstance(value, bool):
-        return axis if value else f"no {axis}"
-    if axis == "damping":
-        return f"{100 * value:g} % damping"
-    after = {"cells": "cells wide", "ppc": "per cell", "damping_kind": "damping", "deformation": "F"}
-    if axis in after or axis == "smoothing":
-        return f"{value} {after.get(axis, axis)}"
-    if axis in ("method", "material"):
-        return str(value)
-    return f"{axis} {f'{value:g}' if isinstance(value, float) else value}"
-
-
-def rises(values: Sequence[float]) -> bool:
+def rises(numbers: Sequence[float]) -> bool:
     """Each above the one before."""
-    return all(later > earlier for earlier, later in pairwise(values))
+    return all(later > earlier for earlier, later in pairwise(numbers))
 
 
-def beyond(value: float, band: tuple[float, float]) -> float:
-    """How far above (or, negative, below) a band a value is, as a share of its nearer end; zero inside."""
+def beyond(value: float, band: Band) -> float:
+    """How far above (or, negative, below) a band a value is, as a fraction of its nearer end; zero inside."""
     low, high = band
     return value / high - 1 if value > high else value / low - 1 if value < low else 0.0
-
-
-def fronts(family: Sequence[FinishedRun], axis: str) -> str:
-    """`0.902 m with 1 per cell, ...`."""
-    return listed(family, axis, lambda one: one.front)
-
-
-def heights(family: Sequence[FinishedRun], axis: str) -> str:
-    """`0.08 m with 1 per cell, ...`."""
-    return listed(family, axis, lambda one: one.height)
-
-
-def listed(family: Sequence[FinishedRun], axis: str, length: Callable[[FinishedRun], float]) -> str:
-    """A length of each run, with what the run has on the axis."""
-    return ", ".join(f"{length(one):.3f} m with {told(axis, getattr(one.run, axis))}" for one in family)
-
-
-def band(limits: tuple[float, float]) -> str:
-    """In m."""
-    return f"{limits[0]:.3f} to {limits[1]:.3f} m"
 
 
 def of_particles(family: Sequence[FinishedRun], known: Experiment) -> list[Claim]:
     """Figure 4."""
     few = sorted(family, key=lambda one: one.run.ppc)
     first, last = few[0], few[-1]
+    every, creep = compared("ppc", *few), max((one.values["creep"] for one in few), key=abs)
+    rising = settled(few, rises([one.height for one in few]))
+    under = beyond(first.height, known.height) < 0 if first.run.ppc == 1 else None
     return [
-        Claim("Run-out is over-predicted whatever the number of particles.",
-              all(beyond(one.front, known.front) > 0 for one in few),
-              f"The front comes to {fronts(few, 'ppc')}; the experiment's band is {band(known.front)}.{crowds(few)}"),
-        Claim("The final height rises with the number of particles.", settled(few, rises([one.height for one in few])),
-              f"It is {heights(few, 'ppc')}.{falling(few)}"),
-        Claim("With one per cell the final height is under-predicted.",
-              beyond(first.height, known.height) < 0 if first.run.ppc == 1 else None,
-              f"It is {heights([first], 'ppc')}; the experiment's is {band(known.height)}."),
-        Claim("With more it reaches roughly the experiment's.", abs(beyond(last.height, known.height)) <= NEAR,
-              f"It is {heights([last], 'ppc')}, {off(last.height, known.height)}; up to {100 * NEAR:.0f} % counts as "
-              "roughly."),
+        Claim(ClaimCode.FRONT_OVER, "ppc", all(beyond(one.front, known.front) > 0 for one in few), every, known,
+              {"crowded": CROWDED}),
+        Claim(ClaimCode.HEIGHT_RISES, "ppc", rising, every, known, {"creep": creep}),
+        Claim(ClaimCode.HEIGHT_UNDER_WITH_ONE, "ppc", under, compared("ppc", first), known),
+        Claim(ClaimCode.HEIGHT_NEAR_WITH_MORE, "ppc", abs(beyond(last.height, known.height)) <= NEAR,
+              compared("ppc", last), known, {"near": NEAR}),
     ]  # fmt: skip
-
-
-def crowds(family: Sequence[FinishedRun]) -> str:
-    """Which runs have a heap too small for its material, as a sentence; nothing where there are none."""
-    crowded = [one for one in family if one.values["crowding"] > CROWDED]
-    if not crowded:
-        return ""
-    named = " and ".join(f"{one.values['crowding']:.2f} times with {told('ppc', one.run.ppc)}" for one in crowded)
-    return f" But of the space they are in particles keep {named} as their volume: those runs are weak evidence."
 
 
 def settled(family: Sequence[FinishedRun], found: bool) -> bool | None:
@@ -171,18 +162,6 @@ def settled(family: Sequence[FinishedRun], found: bool) -> bool | None:
     return None if found and any(falls) else found
 
 
-def falling(family: Sequence[FinishedRun]) -> str:
-    """How much heights still change, as a sentence."""
-    most = max(family, key=lambda one: abs(one.values["creep"]))
-    return f" In the last fifth of the time they still fell by up to {100 * most.values['creep']:.1f} %."
-
-
-def off(value: float, limits: tuple[float, float]) -> str:
-    """`28 % below the band`."""
-    away = beyond(value, limits)
-    return "in the band" if not away else f"{100 * abs(away):.0f} % {'above' if away > 0 else 'below'} the band"
-
-
 def of_damping(family: Sequence[FinishedRun], known: Experiment) -> list[Claim]:
     """Figures 5 and 6."""
     rising = sorted(family, key=lambda one: one.run.damping)
@@ -191,19 +170,16 @@ def of_damping(family: Sequence[FinishedRun], known: Experiment) -> list[Claim]:
     potential, kinetic = (largest_change(first, last, name) for name in ("potential", "on_grid"))
     most = float(first.curves["on_grid"].max())
     least = float(last.curves["on_grid"].max())
+    closer = abs(beyond(last.front, known.front)) < abs(beyond(first.front, known.front))
+    ends = compared("damping", first, last)
+    changes = {"potential": potential / start, "kinetic": kinetic / start, "little": LITTLE}
+    marked = {"kinetic": kinetic / most, "fall": 1 - least / most, "marked": MARKED}
     return [
-        Claim("Run-out falls as damping grows.", rises([-one.front for one in rising]),
-              f"The front comes to {fronts(rising, 'damping')}."),
-        Claim("It comes closer to the experiment.",
-              abs(beyond(last.front, known.front)) < abs(beyond(first.front, known.front)),
-              f"From {off(first.front, known.front)} to {off(last.front, known.front)}, {band(known.front)}."),
-        Claim("Potential energy is not discernibly changed by damping.", potential <= LITTLE * start,
-              f"With {told('damping', last.run.damping)} it changes by up to {100 * potential / start:.1f} % of the "
-              f"initial potential energy, and kinetic energy by up to {100 * kinetic / start:.1f} % of it: alike. From "
-              f"{100 * LITTLE:.0f} % on a change can be seen on a figure."),
-        Claim("Kinetic energy is markedly changed.", kinetic >= MARKED * most,
-              f"By up to {100 * kinetic / most:.0f} % of its largest value, which falls by "
-              f"{100 * (1 - least / most):.0f} %. From {100 * MARKED:.0f} % on it counts as marked."),
+        Claim(ClaimCode.FRONT_FALLS, "damping", rises([-one.front for one in rising]), compared("damping", *rising),
+              known),
+        Claim(ClaimCode.FRONT_CLOSER, "damping", closer, ends, known),
+        Claim(ClaimCode.POTENTIAL_KEPT, "damping", potential <= LITTLE * start, ends, known, changes),
+        Claim(ClaimCode.KINETIC_CHANGED, "damping", kinetic >= MARKED * most, ends, known, marked),
     ]  # fmt: skip
 
 
@@ -218,22 +194,16 @@ def of_smoothing(family: Sequence[FinishedRun], known: Experiment) -> list[Claim
     by = {one.run.smoothing.partition(":")[0]: one for one in reversed(family)}
     plain, found = by.get("none"), []
     if plain and (one := by.get("volumetric")):
+        both = compared("smoothing", one, plain)
         found += [
-            Claim("Volumetric smoothing over-predicts the run-out.", beyond(one.front, known.front) > 0,
-                  f"The front comes to {one.front:.3f} m; the experiment's band is {band(known.front)}. It is "
-                  f"{1000 * (one.front - plain.front):+.0f} mm from where it comes without smoothing."),
-            Claim("Volumetric smoothing over-predicts the height of the slope.", beyond(one.height, known.height) > 0,
-                  f"The height at the wall is {one.height:.3f} m, and {plain.height:.3f} m without smoothing; the "
-                  f"experiment's is {band(known.height)}."),
-        ]  # fmt: skip
+            Claim(ClaimCode.VOLUMETRIC_FRONT, "smoothing", beyond(one.front, known.front) > 0, both, known),
+            Claim(ClaimCode.VOLUMETRIC_HEIGHT, "smoothing", beyond(one.height, known.height) > 0, both, known),
+        ]
     if plain and (one := by.get("deviatoric")):
         near, far = (abs(beyond(each.front, known.front)) for each in (one, plain))
-        found.append(
-            Claim("Deviatoric smoothing reduces the run-out, towards the experiment.",
-                  None if near == far == 0 else one.front < (1 - SCATTER) * plain.front and near < far,
-                  f"The front comes to {one.front:.3f} m with and {plain.front:.3f} m without it, "
-                  f"{off(one.front, known.front)} and {off(plain.front, known.front)}; up to "
-                  f"{100 * SCATTER:.0f} % is scatter."))  # fmt: skip
+        nearer = None if near == far == 0 else one.front < (1 - SCATTER) * plain.front and near < far
+        both = compared("smoothing", one, plain)
+        found.append(Claim(ClaimCode.DEVIATORIC_FRONT, "smoothing", nearer, both, known, {"scatter": SCATTER}))
     return found
 
 
@@ -246,25 +216,18 @@ def of_law(family: Sequence[FinishedRun], known: Experiment) -> list[Claim]:
     apart = sand.front / plain.front - 1
     t, front = sand.curves["t"], sand.curves["front_99"]
     difference = front - np.interp(t, plain.curves["t"], plain.curves["front_99"])
-    early = float(np.abs(difference[t <= 0.17]).max(initial=0.0))
-    return [
-        Claim("UBCSAND and Mohr-Coulomb end close to each other.", abs(apart) <= CLOSE,
-              f"The fronts come to {sand.front:.3f} m and {plain.front:.3f} m, {100 * apart:+.1f} %; up to "
-              f"{100 * CLOSE:.0f} % counts as close."),
-        Claim("UBCSAND is marginally stiffer: it runs out a little less.", -CLOSE <= apart < 0,
-              f"The front of UBCSAND comes {1000 * abs(sand.front - plain.front):.0f} mm "
-              f"{'less far' if apart < 0 else 'further'}, "
-              f"its height at the wall is {sand.height:.3f} m against {plain.height:.3f} m."),
-        Claim("Both come close to the experiment.",
-              all(abs(beyond(one.front, known.front)) <= NEAR for one in (plain, sand)),
-              f"UBCSAND {off(sand.front, known.front)}, Mohr-Coulomb {off(plain.front, known.front)}, "
-              f"{band(known.front)}; up to {100 * NEAR:.0f} % counts as close."),
-        Claim("UBCSAND follows the experiment in the first 0.17 s.", None,
-              "No curve of the experiment is at hand."),
-        Claim("UBCSAND follows Mohr-Coulomb later, and not before 0.17 s.", abs(float(difference[-1])) < early,
-              f"The two fronts differ by up to {1000 * early:.0f} mm until 0.17 s, and by "
-              f"{1000 * abs(float(difference[-1])):.0f} mm at the end."),
-    ]  # fmt: skip
+    early = float(np.abs(difference[t <= EARLY]).max(initial=0.0))
+    late = abs(float(difference[-1]))
+    both = compared("law", sand, plain)
+    near = all(abs(beyond(one.front, known.front)) <= NEAR for one in (plain, sand))
+    found: Mapping[ClaimCode, tuple[bool | None, dict[str, float]]] = {
+        ClaimCode.MATERIALS_CLOSE: (abs(apart) <= CLOSE, {"apart": apart, "close": CLOSE}),
+        ClaimCode.SAND_STIFFER: (-CLOSE <= apart < 0, {"apart": apart}),
+        ClaimCode.BOTH_NEAR: (near, {"near": NEAR}),
+        ClaimCode.SAND_EARLY: (None, {"until": EARLY}),
+        ClaimCode.SAND_LATE: (late < early, {"until": EARLY, "early": early, "late": late}),
+    }
+    return [Claim(code, "law", reproduced, both, known, numbers) for code, (reproduced, numbers) in found.items()]
 
 
 Speaker = Callable[[Sequence[FinishedRun], Experiment], list[Claim]]

@@ -14,10 +14,6 @@ from mpm_verify.cases.column.run import ColumnRun
 
 ASPECTS = 3.0, 9.5  # of the columns that were measured
 Band = tuple[float, float]
-UNCERTAIN = (
-    "The band of the experiment lies between two forms in which texts quote its scaling law, that of the height "
-    "between two experiments; they are no error bars. No curve of the experiment is shown, because none is at hand."
-)
 
 
 @dataclass(frozen=True)

@@ -15,16 +15,20 @@ import numpy as np
 from scipy import ndimage
 
 from mpm_verify.cases.column.run import AT_REST, ColumnRun
-from mpm_verify.solver.energy_budget import residual
+from mpm_verify.solver.energy_budget import Budget, kinetic, residual
+from mpm_verify.solver.model import Model, Observer
 from mpm_verify.solver.state import Floats
-from mpm_verify.solver.step import Model
 
+LOOKS = 200  # rows of a run
 SHARE = 0.99
 SLACK = 1e-6  # of the largest stress: what round-off may pass the strength by
 
 
-class Measure:
-    """Takes a row of numbers and a profile at each look; `run` says which way the heap runs."""
+class Measure(Observer):
+    """Takes a row of numbers and a profile at each look, and has an energy budget watch the steps between them.
+
+    `run` says which way the heap runs.
+    """
 
     def __init__(self, run: ColumnRun, model: Model) -> None:
         self.run, self.end = run, float(model.grid.upper[0])
@@ -34,6 +38,14 @@ class Measure:
         self.profiles: list[Floats] = []
         self.momentum = momentum(model)
         self.plastic, self.worked = 0.0, worked(model)
+        self.steps = round(run.duration / model.dt)
+        self.budget = Budget(np.array([0.0, -run.g]), kinetic(model.particles))
+        model.watch(self.budget)
+
+    def after_step(self, model: Model) -> None:
+        """Look where it is due."""
+        if due(model.steps, self.steps, LOOKS):
+            self.look(model)
 
     def places(self, model: Model) -> Floats:
         """Places (P,2) of the particles, x as the distance from the wall; within the grid whatever became of them."""
@@ -45,11 +57,10 @@ class Measure:
         p, x = model.particles, self.places(model)
         heap = connected(x, self.run.strip)
         profile = surface(x[heap], p.m[heap], self.run.strip, self.strips)
-        assert model.budget
-        terms = model.budget.terms(model)
+        terms = self.budget.terms(model)
         self.first = self.first or terms
         moved = momentum(model) - self.momentum
-        given = model.budget.impulse + model.budget.gravity * float(p.m.sum()) * model.time
+        given = self.budget.impulse + self.budget.gravity * float(p.m.sum()) * model.time
         row = {
             "t": model.time,
             "front_99": quantile(x[:, 0], p.m, 0.99),
@@ -67,7 +78,7 @@ class Measure:
             **scaled(model),
             "crowding": crowding(x, p.V0 * p.J, self.run.strip),
         }
-        row["courant"] = model.dt / model.grid.dx * (wave(model.material, row["largest_s"]) + row["fastest"])
+        row["courant"] = model.dt / model.grid.dx * (model.material.wave_speed(row["largest_s"]) + row["fastest"])
         self.rows.append(row)
         self.profiles.append(profile)
 
@@ -77,9 +88,9 @@ class Measure:
         Linear elasticity stores an energy, and the rest is plastic. UBCSAND, whose moduli follow s, has none: there the
         law gives the plastic work, per volume as it is, and the rest is called elastic.
         """
-        p, law = model.particles, model.material
-        if hasattr(law, "stored"):
-            elastic = float((p.V0 * p.J * law.stored(p.sigma)).sum())
+        p, stored = model.particles, model.material.stored_energy
+        if stored:
+            elastic = float((p.V0 * p.J * stored(p.sigma)).sum())
             return {"elastic": elastic, "plastic": work - elastic}
         now = worked(model)
         volume = p.in_initial_order("V0") * p.in_initial_order("J")
@@ -94,9 +105,9 @@ class Measure:
         return {**columns, "profile": np.array(self.profiles).reshape(len(self.rows), -1)}
 
 
-def wave(law: Any, s: float) -> float:
-    """Speed of the compression wave; of a law that stiffens with s, under the largest s there is."""
-    return float(law.wave_speed(s) if hasattr(law, "moduli") else law.wave_speed())
+def due(step: int, steps: int, times: int) -> bool:
+    """Whether this step is one of so many, evenly spread, the last one among them."""
+    return step * times // steps != (step - 1) * times // steps
 
 
 def momentum(model: Model) -> Floats:
@@ -137,7 +148,7 @@ def surface(x: Floats, m: Floats, strip: float, strips: int) -> Floats:
 
 def worked(model: Model) -> Floats:
     """Plastic work per volume of each particle (P,), in the initial order, of a law that counts it."""
-    memory: Any = getattr(model.material, "memory", ())
+    memory = model.material.memory
     if "work_p" not in memory:
         return np.zeros(len(model.particles))
     found: Floats = model.particles.in_initial_order("history")[:, memory.index("work_p")]
@@ -159,7 +170,7 @@ def strength(model: Model) -> dict[str, float]:
     `beyond`: the largest t/(s sin phi + c cos phi) - 1 of particles with more than 1 % of the largest s. Of laws that
     yield by t and s alone; zero of others. `idle`: the share without stress. `largest_s`: the largest s.
     """
-    p, law = model.particles, model.material
+    p, material = model.particles, model.material
     sigma = p.sigma_smoothed if p.sigma_smoothed.size else p.sigma
     s, t = -(sigma[:, 0] + sigma[:, 1]) / 2, np.hypot((sigma[:, 0] - sigma[:, 1]) / 2, sigma[:, 3])
     found = {
@@ -168,10 +179,10 @@ def strength(model: Model) -> dict[str, float]:
         "outside": 0.0,
         "beyond": 0.0,
     }
-    phi = radians(getattr(law, "phi_f", getattr(law, "phi", 0.0)))
-    if not phi or hasattr(law, "cone"):
+    if not material.yields_in_plane:
         return found
-    strong = sin(phi) * s + law.c * cos(phi)  # type: ignore[attr-defined]
+    phi = radians(material.friction_angle or 0.0)
+    strong = sin(phi) * s + (material.cohesion or 0.0) * cos(phi)
     pressed = s > 0.01 * max(float(s.max()), 1e-300)
     ratio = t[pressed] / strong[pressed] - 1
     outside = float((t > strong + SLACK * float(np.abs(sigma).max())).mean())
@@ -180,10 +191,8 @@ def strength(model: Model) -> dict[str, float]:
 
 def scaled(model: Model) -> dict[str, float]:
     """Shares of particles with a cut domain and with void strain, the volume of void per solid, the extremes of J."""
-    p, law = model.particles, model.material
-    basis: Any = model.basis
-    cut = float(basis.cut(p.F, p.domain, model.grid.dx).mean()) if hasattr(basis, "cut") else 0.0
-    memory: Any = getattr(law, "memory", ())
+    p, memory = model.particles, model.material.memory
+    cut = float(model.basis.cut(p.F, p.domain, model.grid.dx).mean())
     void = p.history[:, memory.index("void")] if "void" in memory else np.zeros(1)
     J = p.J
     return {

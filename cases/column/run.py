@@ -8,7 +8,7 @@ from math import inf, isqrt, sqrt
 from typing import ClassVar, Literal, get_args
 
 from mpm_verify.cases.harness.study import ResultRecord, RunRecord, Study, axis
-from mpm_verify.solver.plugins import MATERIALS, METHODS, SMOOTHINGS, TRANSFERS
+from mpm_verify.solver.plugins import MATERIALS, METHODS, SMOOTHINGS, TRANSFERS, load, split
 from mpm_verify.solver.sources import TOP, digest
 
 Start = Literal["none", "k0", "oedometric"]
@@ -100,8 +100,8 @@ class ColumnRun(RunRecord):
 
     @property
     def cost(self) -> float:
-        """Particle updates, roughly: what a run takes grows with it. UBCSAND is stiffer, and slower."""
-        stiff = 3.0 if self.material.startswith("ubcsand") else 1.0
+        """Particle updates, roughly: what a run takes grows with it. What stiffens with s is stiffer, and slower."""
+        stiff = 3.0 if load(MATERIALS, split(self.material)[0]).moduli else 1.0
         return 230.0 * stiff * self.aspect * self.ppc * self.cells**3 * self.duration / self.courant
 
     @property
@@ -115,8 +115,9 @@ class ColumnRun(RunRecord):
         return round((self.channel * self.cells + 1) * ((self.aspect + 1) * self.cells + 1))
 
     def __str__(self) -> str:
-        parts = [f"{self.method} {self.cells} cells wide, {self.ppc} per cell"]
-        parts += [f"damping {self.damping:g}"] * bool(self.damping) + [self.smoothing] * (self.smoothing != "none")
+        parts = [self.method, f"cells={self.cells}", f"ppc={self.ppc}"]
+        parts += [f"damping={self.damping:g}"] * bool(self.damping)
+        parts += [f"smoothing={self.smoothing}"] * (self.smoothing != "none")
         return ", ".join(parts)
 
     @property

@@ -6,7 +6,6 @@ import numpy as np
 
 from mpm_verify.cases.element.element import Element, State
 from mpm_verify.cases.element.paths import ElementTest, Followed
-from mpm_verify.solver.rate_material import RateMaterial
 from mpm_verify.solver.state import Floats, Particles
 
 COMPLEX = 1e-30
@@ -58,5 +57,5 @@ def small(law: Any) -> bool:
 
 def start(law: Any, test: ElementTest, stress: float) -> Floats:
     """Isotropic stress at the start (4,), `stress` compression positive; nothing for a law of F."""
-    confined = stress * test.loose if isinstance(law, RateMaterial) else 0.0
+    confined = stress * test.loose if law.energy is None else 0.0
     return np.array([-confined, -confined, -confined, 0.0])

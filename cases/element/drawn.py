@@ -1,29 +1,31 @@
 """The curves of the element tests that are kept to be drawn, and the lines and points that are drawn beside them."""
 
+from collections.abc import Callable
 from math import cos, radians, sin
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from mpm_verify.cases.element import ubcsand_exact as ubc
 from mpm_verify.cases.element.checks import davis_ratio
+from mpm_verify.cases.element.study import ElementStudy
 from mpm_verify.cases.harness.checks import Curves
-from mpm_verify.solver.material.mohr_coulomb import MohrCoulomb
 from mpm_verify.solver.material.ubcsand import Ubcsand
-
-if TYPE_CHECKING:
-    from mpm_verify.cases.element.exam import ElementStudy
 
 MARKED = 5e3  # Pa, the confining stress of the reference tables
 DRAWN = 400  # points of a curve that are kept
+STRENGTH: dict[str, Callable[[Any], tuple[float, float]]] = {  # a and b of t = a + b s, by the name of the material
+    "mohr_coulomb": lambda law: (law.c * cos(radians(law.phi)), sin(radians(law.phi))),
+    "ubcsand": lambda law: (law.shift * law.eta_f, law.eta_f),
+}
 
 
-def drawn(law: Any, studies: "list[ElementStudy]", stress: float) -> Curves:
+def drawn(law: Any, studies: list[ElementStudy], stress: float) -> Curves:
     """Everything that the page draws."""
     return curves(studies) | strength(law) | limit(law, stress) | marks(law, studies, stress)
 
 
-def curves(studies: "list[ElementStudy]") -> Curves:
+def curves(studies: list[ElementStudy]) -> Curves:
     """`test/NAME` and `exact/NAME` columns, `errors/NAME`: steps, error; `kind/NAME`: what its axes are."""
     kept: Curves = {}
     for one in studies:
@@ -39,12 +41,10 @@ def curves(studies: "list[ElementStudy]") -> Curves:
 
 def strength(law: Any) -> Curves:
     """The line t = a + b s that a soil cannot pass in the plane, where the law has one."""
-    if isinstance(law, Ubcsand):
-        return {"strength": {"a": np.array([law.shift * law.eta_f]), "b": np.array([law.eta_f])}}
-    if isinstance(law, MohrCoulomb):
-        b = sin(radians(law.phi))
-        return {"strength": {"a": np.array([law.c * cos(radians(law.phi))]), "b": np.array([b])}}
-    return {}
+    if law.name not in STRENGTH:
+        return {}
+    a, b = STRENGTH[law.name](law)
+    return {"strength": {"a": np.array([a]), "b": np.array([b])}}
 
 
 def limit(law: Any, stress: float) -> Curves:
@@ -53,7 +53,7 @@ def limit(law: Any, stress: float) -> Curves:
     return {} if ratio is None else {"limit/shear_stress": {"tau": np.array([ratio * stress])}}
 
 
-def marks(law: Any, studies: "list[ElementStudy]", stress: float) -> Curves:
+def marks(law: Any, studies: list[ElementStudy], stress: float) -> Curves:
     """Points of the reference tables on the curves of the law that they are for."""
     if law != Ubcsand() or stress != MARKED:
         return {}

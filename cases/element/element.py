@@ -6,20 +6,32 @@ tension positive, zz = 0 (plane strain). A law in rate form is asked by its kern
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from enum import StrEnum
 from functools import cached_property
+from math import inf
 from typing import Any
 
 import numpy as np
 
-from mpm_verify.solver.rate_material import RateMaterial
 from mpm_verify.solver.state import Floats, Particles
 
 TOLERANCE, ENOUGH = 1e-13, 1e-12  # of the residuals' scales: where Newton ends, and what round-off may leave
 ATTEMPTS, NUDGE = 60, 1e-7
 
 
+class ElementFailure(StrEnum):
+    """Why a step cannot be solved."""
+
+    NOT_FINITE = "not_finite"  # a stress that is no finite number
+    NO_STRAIN = "no_strain"  # no strain leads to what is asked
+
+
 class ElementFailed(Exception):  # noqa: N818 - what cannot go on is a result
-    """The step cannot be solved; the message says why."""
+    """The step cannot be solved: why, and the largest residual that is left, as a fraction of its scale."""
+
+    def __init__(self, cause: ElementFailure, left: float = inf) -> None:
+        super().__init__(cause, left)
+        self.cause, self.left = cause, left
 
 
 @dataclass(frozen=True)
@@ -49,7 +61,7 @@ class Element:
 
     def start(self, sigma: Floats) -> State:
         """The state under the stress sigma (4,); a law of F starts undeformed whatever it is."""
-        if isinstance(self.law, RateMaterial):
+        if self.law.respond is not None:
             return State(np.zeros(3), sigma.copy(), self.law.initial(sigma[None])[0])
         return State(np.zeros(3), np.zeros(4), np.zeros(0))
 
@@ -57,7 +69,7 @@ class Element:
         """The states after each of the strain increments (n,3), all from the same state."""
         count = len(increments)
         strains = state.strain + increments
-        if isinstance(self.law, RateMaterial):
+        if self.law.respond is not None:
             sigma, history = np.tile(state.sigma, count), np.tile(state.history, count)
             self.law.respond(self.constants, sigma, np.ascontiguousarray(increments).ravel(), history)
             rows, memories = sigma.reshape(count, 4), history.reshape(count, -1)
@@ -82,7 +94,7 @@ class Element:
             residuals = np.array([control(move, end) / scale for move, end in zip(moves, ends, strict=True)])
             best = float(np.abs(residuals[0]).max())
             if not np.isfinite(residuals).all():
-                raise ElementFailed("a stress that is not finite")
+                raise ElementFailed(ElementFailure.NOT_FINITE)
             if best < TOLERANCE:
                 return ends[0]
             # Least squares: perfect plasticity may leave a tangent without an inverse on the way.
@@ -93,7 +105,7 @@ class Element:
             x = better
         if best < ENOUGH:
             return self.step(state, x[None])[0]
-        raise ElementFailed(f"no strain leads there: {best:.1e} of the stress is left")
+        raise ElementFailed(ElementFailure.NO_STRAIN, best)
 
     def _shorten(
         self, state: State, control: Control, x: Floats, move: Floats, scale: Floats, best: float

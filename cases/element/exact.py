@@ -1,5 +1,6 @@
 """Exact curves of element tests, where a law has them: what its numbers are drawn over and judged by."""
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,6 @@ from mpm_verify.cases.element import ubcsand_exact as ubc
 from mpm_verify.cases.element.curves import EnergyElement, columns, start
 from mpm_verify.cases.element.paths import ElementTest, Followed, follow
 from mpm_verify.solver.elastic import Elastic
-from mpm_verify.solver.material.hypoelastic import Hypoelastic
 from mpm_verify.solver.material.mohr_coulomb import MohrCoulomb, slope
 from mpm_verify.solver.material.ubcsand import Ubcsand
 from mpm_verify.solver.state import Floats
@@ -20,16 +20,15 @@ POINTS = 60
 
 def exact(law: Any, test: ElementTest, stress: float) -> tuple[Columns, str] | None:
     """Columns of the exact curve, and what it is; None where nothing is known."""
-    if hasattr(law, "energy"):
+    if law.energy is not None:
         found = follow(EnergyElement(law), test, test.steps(POINTS), start(law, test, stress))
         return columns(test, found), "derivative of the energy"
-    if isinstance(law, Hypoelastic):
-        return elastic(law, test, stress), "linear elasticity"
-    if isinstance(law, MohrCoulomb):
-        return perfect(law, test, stress)
-    if isinstance(law, Ubcsand) and not law.c:
-        return sand(law, test, stress)
-    return None
+    return EXACT[law.name](law, test, stress) if law.name in EXACT else None
+
+
+def hypoelastic(law: Elastic, test: ElementTest, stress: float) -> tuple[Columns, str]:
+    """The elastic curve of any test."""
+    return elastic(law, test, stress), "linear elasticity"
 
 
 def elastic(law: Elastic, test: ElementTest, stress: float) -> Columns:
@@ -51,7 +50,9 @@ def elastic(law: Elastic, test: ElementTest, stress: float) -> Columns:
 
 
 def sand(law: Ubcsand, test: ElementTest, stress: float) -> tuple[Columns, str] | None:
-    """UBCSAND: isotropic compression, shear at constant s, drained biaxial compression to failure."""
+    """UBCSAND without cohesion: isotropic compression, shear at constant s, drained biaxial compression to failure."""
+    if law.c:
+        return None
     if test.name == "isotropic" and law.ne == law.me:
         ev = np.linspace(0, test.length, POINTS)
         s = np.array([ubc.isotropic(law, stress, float(e)) for e in ev])
@@ -103,3 +104,11 @@ def perfect(law: MohrCoulomb, test: ElementTest, stress: float) -> tuple[Columns
     sx = np.full(len(ey), stress)
     stresses = {"s": (sx + sy) / 2, "t": (sy - sx) / 2, "sx": sx, "sy": sy}
     return stresses | {"gamma": 2 * ey - ev, "ev": ev, "ey": ey}, "closed form"
+
+
+# By the name of the material.
+EXACT: dict[str, Callable[[Any, ElementTest, float], tuple[Columns, str] | None]] = {
+    "hypoelastic": hypoelastic,
+    "mohr_coulomb": perfect,
+    "ubcsand": sand,
+}

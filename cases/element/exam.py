@@ -1,174 +1,181 @@
-"""`verify material`: element tests of one law as an Examination, with errors and orders in the strain step."""
+"""`verify material`: element tests of one material as an Examination, with errors and orders in the strain step."""
 
-from dataclasses import asdict, dataclass
-from math import log2
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, replace
+from enum import StrEnum
 from typing import Any
 
 import numpy as np
 
-from mpm_verify.cases.element.checks import law_checks
-from mpm_verify.cases.element.curves import columns, start
 from mpm_verify.cases.element.drawn import drawn
-from mpm_verify.cases.element.element import Element
-from mpm_verify.cases.element.exact import Columns, exact
-from mpm_verify.cases.element.paths import ElementTest, Followed, follow
-from mpm_verify.cases.harness.checks import Check, Examination
-from mpm_verify.cases.harness.environment import environment
-from mpm_verify.solver._jit import use_threads
-from mpm_verify.solver.material.drucker_prager import DruckerPrager
-from mpm_verify.solver.material.mohr_coulomb import MohrCoulomb
+from mpm_verify.cases.element.paths import PathSource
+from mpm_verify.cases.element.run import ElementRun
+from mpm_verify.cases.element.study import FINE, ROUND_OFF, ElementStudy
+from mpm_verify.cases.harness.checks import Check, Examination, Remark
+from mpm_verify.cases.harness.study import Study
 from mpm_verify.solver.material.ubcsand import Ubcsand, out_of_range
-
-DOUBLED, FINE = (1, 2, 4, 8, 16), 64  # steps of the study, and of what stands for the truth where nothing is known
-ROUND_OFF = 1e-9  # relative errors below it have no order
-FIRST = (
-    "First order is expected of this law: it returns along the stress at the end of a step, and costs an order where "
-    "the direction of the stress turns."
-)
+from mpm_verify.solver.plugins import split
 
 
-@dataclass(frozen=True)
-class ElementStudy:
-    """One test: its curve, the exact one or the finest, the errors at each number of steps, and the last order."""
+class ElementRemark(StrEnum):
+    """What came out, what one should know of each test, and what parameters do."""
 
-    test: ElementTest
-    curve: Columns
-    failed: str
-    truth: Columns | None
-    source: str
-    steps: tuple[int, ...]
-    errors: tuple[float, ...]
-
-    @property
-    def order(self) -> float:
-        """Between the two finest that are above round-off; NaN where there are none.
-
-        Against the test's own curve the last is left out: a quarter of that curve's steps shares too much of its error.
-        """
-        seen = [error for error in (self.errors if self.truth else self.errors[:-1]) if error > ROUND_OFF]
-        return log2(seen[-2] / seen[-1]) if len(seen) > 1 else float("nan")
-
-
-def study(law: Any, test: ElementTest, stress: float, steps: int) -> ElementStudy:
-    """The test with once, twice, ... sixteen times the steps."""
-    element, begin = Element(law), start(law, test, stress)
-    counts = tuple(n * test.steps(steps) for n in DOUBLED)
-    runs = [follow(element, test, n, begin) for n in counts]
-    known = exact(law, test, stress)
-    truth, source = known or (None, f"its own curve with {FINE} times the steps")
-    if truth is None and not any(run.failed for run in runs):
-        finest = follow(element, test, FINE * counts[0], begin)
-        truth_end = None if finest.failed else columns(test, finest)
-    else:
-        truth_end = truth
-    errors = tuple(distance(test, run, truth_end) for run in runs)
-    return ElementStudy(test, columns(test, runs[-1]), first_failure(runs), truth, source, counts, errors)
-
-
-def first_failure(runs: list[Followed]) -> str:
-    """Why a run ended early, of the finest that did."""
-    return next((run.failed for run in reversed(runs) if run.failed), "")
-
-
-def distance(test: ElementTest, run: Followed, truth: Columns | None) -> float:
-    """Error at the end of the path: of s and t over the largest stress, of the volume over the largest strain."""
-    if run.failed or truth is None:
-        return float("nan")
-    mine = columns(test, run)
-    size = max(float(np.abs([truth["s"], truth["t"]]).max()), 1e-300)
-    stress = max(abs(mine[name][-1] - truth[name][-1]) for name in ("s", "t")) / size
-    length = max(float(np.abs(run.strain).max()), 1e-300)
-    return float(max(stress, abs(mine["ev"][-1] - truth["ev"][-1]) / length))
+    TESTS = "element.tests"
+    UNJUDGED = "element.unjudged"  # nothing is known of the path
+    EXACT = "element.exact"  # tests without an error in any number of steps
+    ORDERS = "element.orders"
+    FIRST_ORDER = "element.first_order"  # is expected of a return along the stress at the end of a step
+    FAILED = "element.failed"
+    AGAINST = "element.against"  # what errors are against: a source
+    AGAINST_OWN = "element.against_own"  # the test's own curve with more steps
+    ROUND_OFF = "element.round_off"
+    NO_ORDER = "element.no_order"
+    ORDER = "element.order"
+    ZZ_WITHIN = "element.zz_within"  # the range of the principal stresses in the plane, in all steps
+    ZZ_OUTSIDE = "element.zz_outside"
+    UNDEFORMED = "element.undeformed"
+    OR_MORE = "element.or_more"
+    NO_EFFECT = "element.no_effect"
+    NO_EFFECT_PRIMARY = "element.no_effect_primary"  # in primary loading
+    AFTER_REVERSAL = "element.after_reversal"
+    CORRELATION = "element.correlation"
+    OUR_READING = "element.our_reading"
+    RATE_IDLE = "element.rate_idle"  # along a path of strains
+    PATH_READ = "element.path_read"  # columns of a file
+    PATH_ZERO = "element.path_zero"  # in every row, as in plane strain
+    PATH_UNUSED = "element.path_unused"
 
 
 def checks(law: Any, studied: ElementStudy) -> list[Check]:
     """Each test ends, is as close to the exact curve as its order says, and of the order that the law has."""
     group, found = studied.test.title, []
     if studied.failed:
-        return [Check(group, f"ends early: {studied.failed}", float("nan"), 0.0, "absolute", "every step is solved")]
+        at = f"step {studied.failed.step} of {studied.failed.steps}"
+        return [Check(group, f"end at {at}", float("nan"), 0.0, "absolute", "every step is solved")]
     finest = studied.errors[-1]
     if studied.truth is not None:
         second = 1e-6 * (1600 / studied.steps[-1]) ** 2  # what order 2 makes of 1e-6 in 1600 steps
-        allowed = max(second, ROUND_OFF) if isinstance(law, Ubcsand) else ROUND_OFF
+        allowed = max(second, ROUND_OFF) if law.order == 2 else ROUND_OFF
         found.append(Check(group, "error at the end, finest", finest, allowed, "at most", studied.source))
-    if isinstance(law, Ubcsand) and not studied.test.cyclic and not len(studied.test.points):
+    if law.order == 2 and not studied.test.cyclic and not len(studied.test.points):
         found.append(Check(group, "order in the strain step", studied.order, 1.9, "at least", "midpoint scheme"))
     return found
 
 
-def examine(
-    specification: str, law: Any, tests: list[ElementTest], stress: float, steps: int, command: str
+def examination(
+    study: Study[ElementRun],
+    run: ElementRun,
+    law: Any,
+    studies: Sequence[ElementStudy],
+    known: Sequence[Check],
+    reads: Sequence[PathSource],
+    environment: dict[str, str],
+    before: str = "",
 ) -> Examination:
-    """All tests of one law; the law's own tables and closed forms are checked whatever tests are chosen."""
-    use_threads(1)  # four rows at a time
-    studies = [study(law, test, stress, steps) for test in tests]
-    found = [check for one in studies for check in checks(law, one)]
-    found += law_checks(law)
+    """Tests of one material, with what is known of it; `before` goes in front of the names of the parts."""
+    found = [*(check for one in studies for check in checks(law, one)), *known]
+    remarks = [*lead(law, studies, found), *rate_idle(run.material), *read(reads)]
+    remarks += [remark for one in studies for remark in notes(law, one)]
+    named = [replace(check, group=before + check.group) for check in found]
     return Examination(
-        f"material-{specification}", f"Element tests of {specification}", command, lead(law, studies, found),
-        tuple(found), parameters(law, stress, steps), {one.test.title: words(law, one) for one in studies},
-        environment(), drawn(law, studies, stress),
+        study.name, study.title, study.command, tuple(remarks), tuple(named), parameters(law, run.stress, run.steps),
+        origins(law), environment, drawn(law, list(studies), run.stress),
     )  # fmt: skip
 
 
-def lead(law: Any, studies: list[ElementStudy], found: list[Check]) -> str:
-    """What came out, in words: how many checks, which orders, what is exact."""
+def rate_idle(specification: str) -> list[Remark]:
+    """A remark on an objective rate that is asked for, which no path of strains can tell from another."""
+    given = [item.removeprefix("rate=") for item in split(specification)[1].split(",") if item.startswith("rate=")]
+    return [Remark(ElementRemark.RATE_IDLE, {"rate": rate}) for rate in given]
+
+
+def read(sources: Sequence[PathSource]) -> list[Remark]:
+    """Remarks on what was read of a path's file, and what was not."""
+    found = []
+    for one in sources:
+        used, zero, unused = (", ".join(names) for names in (one.used, one.zero, one.unused))
+        found.append(Remark(ElementRemark.PATH_READ, {"file": one.name, "used": used, "largest": one.largest}))
+        if zero:
+            found.append(Remark(ElementRemark.PATH_ZERO, {"columns": zero}))
+        if unused:
+            found.append(Remark(ElementRemark.PATH_UNUSED, {"file": one.name, "columns": unused}))
+    return found
+
+
+def lead(law: Any, studies: Sequence[ElementStudy], found: Sequence[Check]) -> list[Remark]:
+    """What came out: how many checks, which orders, what is exact."""
     missed = sum(check.outcome != "PASS" for check in found)
-    told = [f"{len(studies)} element tests, {len(found)} checks: {f'{missed} did not pass' if missed else 'all pass'}."]
+    counts = {"tests": len(studies), "checks": len(found), "missed": missed}
+    told = [Remark(ElementRemark.TESTS if found else ElementRemark.UNJUDGED, counts)]
     flat = sum(max(one.errors) <= ROUND_OFF for one in studies)
     orders = [one.order for one in studies if one.order == one.order]
     if flat:
-        told.append(f"{flat} {'is' if flat == 1 else 'are'} exact in any number of steps.")
+        told.append(Remark(ElementRemark.EXACT, {"tests": flat}))
     if orders:
-        told.append(f"Errors in the strain step fall with orders from {min(orders):.2f} to {max(orders):.2f}.")
-        if isinstance(law, MohrCoulomb | DruckerPrager):
-            told.append(FIRST)
-    if not found:
-        told = [f"{len(studies)} element tests. Nothing is known of this path, so nothing is judged.", *told[1:]]
-    return " ".join(told)
+        told.append(Remark(ElementRemark.ORDERS, {"least": min(orders), "most": max(orders)}))
+        if law.order == 1:
+            told.append(Remark(ElementRemark.FIRST_ORDER))
+    return told
 
 
-def words(law: Any, one: ElementStudy) -> tuple[str, ...]:
+def notes(law: Any, one: ElementStudy) -> list[Remark]:
     """What the errors are held against, what came out, and how much of the path is the plane's alone to judge."""
-    end = f"It ends early: {one.failed}." if one.failed else ""
-    if max(one.errors) <= ROUND_OFF:
-        order = "The error is round-off at any number of steps: each step is exact here, and there is no order."
-    elif np.isnan(one.order):
-        order = "There is no order to see."
+    group, stopped = one.test.title, one.failed
+    found = []
+    if stopped:
+        where = {"left": stopped.left, "step": stopped.step, "steps": stopped.steps}
+        found.append(Remark(ElementRemark.FAILED, {"cause": stopped.cause, **where}, group))
+    if one.source:
+        found.append(Remark(ElementRemark.AGAINST, {"source": one.source}, group))
     else:
-        order = f"The order is {one.order:.2f}."
-    return tuple(filter(None, [end, f"Errors are against: {one.source}. {order}", beyond(law, one)]))
+        found.append(Remark(ElementRemark.AGAINST_OWN, {"times": FINE}, group))
+    if max(one.errors) <= ROUND_OFF:
+        found.append(Remark(ElementRemark.ROUND_OFF, {"largest": max(one.errors)}, group))
+    elif np.isnan(one.order):
+        found.append(Remark(ElementRemark.NO_ORDER, {}, group))
+    else:
+        found.append(Remark(ElementRemark.ORDER, {"order": one.order}, group))
+    outside = beyond(law, one)
+    if outside is not None:
+        code = ElementRemark.ZZ_OUTSIDE if outside else ElementRemark.ZZ_WITHIN
+        found.append(Remark(code, {"fraction": outside}, group))
+    return found
 
 
-def beyond(law: Any, one: ElementStudy) -> str:
-    """In which share of the finest run's steps zz leaves the plane's range, of a law that yields in the plane alone."""
-    if not isinstance(law, Ubcsand) or len(one.curve["s"]) < 2:
-        return ""
+def beyond(law: Any, one: ElementStudy) -> float | None:
+    """Fraction of the finest run's steps in which zz leaves the plane's range; None of a material that sees zz."""
+    if law.name not in PLANE_ALONE or len(one.curve["s"]) < 2:
+        return None
     sigma = np.column_stack([-one.curve["sx"], -one.curve["sy"], -one.curve["sz"], one.curve["tau"]])
-    share = 100 * float(np.mean(out_of_range(sigma[1:])))
-    if share == 0:
-        return "zz is within the range of the principal stresses in the plane in all steps."
-    return (
-        f"zz is outside the range of the principal stresses in the plane in {share:.3g} % of the steps: there the "
-        "largest shear is on other planes, which this law does not look at."
-    )
+    return float(np.mean(PLANE_ALONE[law.name](sigma[1:])))
 
 
-def parameters(law: Any, stress: float, steps: int) -> dict[str, str]:
-    """Of the law, with what one should know of them, and of the tests."""
-    own = {key: value if isinstance(value, str) else f"{value:.10g}" for key, value in asdict(law).items()}
-    told = remarks(law) if isinstance(law, Ubcsand) else {}
-    own |= {key: f"{own[key]} ({remark})" for key, remark in told.items()}
-    confined = "the law starts undeformed" if hasattr(law, "energy") else f"{stress:g}"
-    return own | {"confining stress": confined, "steps of the coarsest run": f"{steps} or a few more"}
+def parameters(law: Any, stress: float, steps: int) -> dict[str, float | str]:
+    """Parameters of the material and of the tests."""
+    own: dict[str, float | str] = dict(asdict(law))
+    return own | {"confining stress": 0.0 if law.energy is not None else stress, "steps of the coarsest run": steps}
 
 
-def remarks(law: Ubcsand) -> dict[str, str]:
-    """What a value does not say: where it comes from, and whether it has an effect."""
-    factors = {f"hfac{n}": "no effect" if law.reversal else "no effect in primary loading" for n in range(1, 7)}
+def origins(law: Any) -> dict[str, str]:
+    """Codes for where a value comes from, and whether it has an effect."""
+    found: dict[str, str] = {"steps of the coarsest run": ElementRemark.OR_MORE}
+    if law.energy is not None:
+        found["confining stress"] = ElementRemark.UNDEFORMED
+    if law.name in ORIGINS:
+        found |= ORIGINS[law.name](law)
+    return found
+
+
+def of_ubcsand(law: Ubcsand) -> dict[str, str]:
+    """Codes for the parameters of UBCSAND."""
+    idle = ElementRemark.NO_EFFECT if law.reversal else ElementRemark.NO_EFFECT_PRIMARY
+    found: dict[str, str] = {f"hfac{n}": idle for n in range(1, 7)}
+    found |= {"Rf": ElementRemark.CORRELATION, "reversal": ElementRemark.OUR_READING}
     if law.reversal:
-        factors |= dict.fromkeys(("hfac1", "hfac2"), "in the stiffness after a reversal")
-    return factors | {
-        "Rf": "not in the paper's Table 2; the default is the correlation 1.1 N^-0.15 at N = 10.7",
-        "reversal": "1 is our reading of the cyclic law, whose rules are not public; 0 is primary loading alone",
-    }
+        found |= dict.fromkeys(("hfac1", "hfac2"), str(ElementRemark.AFTER_REVERSAL))
+    return found
+
+
+# By the name of the material: where its parameters' values come from, and the stresses that it does not judge.
+ORIGINS: dict[str, Callable[[Any], dict[str, str]]] = {"ubcsand": of_ubcsand}
+PLANE_ALONE: dict[str, Callable[..., Any]] = {"ubcsand": out_of_range}

@@ -1,8 +1,7 @@
 """The element tests as data: of each three conditions on strains and stresses, and how far it goes.
 
 A strain condition gives the increment of a combination of xx, yy, xy (tensor), a stress condition holds one where it
-was. Compression is along y. A strain path of one's own
-comes from a CSV file (element_csv.py).
+was. Compression is along y. A strain path of one's own comes from a CSV file (path_file.py).
 """
 
 from collections.abc import Callable
@@ -12,7 +11,7 @@ from typing import Literal
 
 import numpy as np
 
-from mpm_verify.cases.element.element import Element, ElementFailed, State
+from mpm_verify.cases.element.element import Element, ElementFailed, ElementFailure, State
 from mpm_verify.solver.state import Floats
 
 CYCLES = 3
@@ -42,6 +41,18 @@ def held(*weights: float) -> Condition:
 
 
 @dataclass(frozen=True)
+class PathSource:
+    """What a path's file held: columns that are `used`, that are no strains, and strains out of the plane that are
+    `zero` in every row; `largest` is the largest strain component."""
+
+    name: str
+    used: tuple[str, ...]
+    unused: tuple[str, ...] = ()
+    zero: tuple[str, ...] = ()
+    largest: float = 0.0
+
+
+@dataclass(frozen=True)
 class ElementTest:
     """`length` of the path in strain; `shear`: its curves are of xy; `closed`: the volume in the plane is kept;
     `cyclic`: to either side CYCLES times and back to the middle; `loose`: it starts at this share of the stress."""
@@ -55,6 +66,7 @@ class ElementTest:
     cyclic: bool = False
     loose: float = 1.0
     points: Floats = field(default_factory=lambda: np.zeros((0, 3)), compare=False)  # of a path from a file
+    source: PathSource | None = field(default=None, compare=False)
 
     @property
     def legs(self) -> int:
@@ -107,18 +119,28 @@ TESTS = {
 
 
 @dataclass(frozen=True)
+class Stopped:
+    """Why a test ends early, what was left of the residual, and at which of how many steps."""
+
+    cause: ElementFailure
+    left: float
+    step: int
+    steps: int
+
+
+@dataclass(frozen=True)
 class Followed:
-    """Strain (N+1,3), sigma (N+1,4), history (N+1,H); `failed`: why it ends before the last step, or nothing."""
+    """Strain (N+1,3), sigma (N+1,4), history (N+1,H); `failed` where it ends before the last step."""
 
     strain: Floats
     sigma: Floats
     history: Floats
-    failed: str = ""
+    failed: Stopped | None = None
 
 
 def follow(element: Element, test: ElementTest, steps: int, start: Floats) -> Followed:
     """The test in equal steps from the stress `start` (4,); what cannot go on ends there and says why."""
-    states, failed = [element.start(start)], ""
+    states, failed = [element.start(start)], None
     size, before = scale_of(element, states[0]), np.zeros(3)
     free = any(condition.of == "stress" for condition in test.conditions)
     for number, move in enumerate(moves(test, steps), 1):
@@ -131,7 +153,7 @@ def follow(element: Element, test: ElementTest, steps: int, start: Floats) -> Fo
                 end = finite(element.step(last, move[None])[0])
             states.append(end)
         except ElementFailed as error:
-            failed = f"{error}, at step {number} of {steps}"
+            failed = Stopped(error.cause, error.left, number, steps)
             break
     strain, sigma, history = (np.array([getattr(s, name) for s in states]) for name in ("strain", "sigma", "history"))
     return Followed(strain, sigma, history, failed)
@@ -183,7 +205,7 @@ def scales(test: ElementTest, move: Floats, size: float) -> Floats:
 
 
 def finite(state: State) -> State:
-    """The state; ElementFailed where its stress is lost."""
+    """The state; ElementFailed where its stress is not finite."""
     if not np.isfinite(state.sigma).all():
-        raise ElementFailed("a stress that is not finite")
+        raise ElementFailed(ElementFailure.NOT_FINITE)
     return state

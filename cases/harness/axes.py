@@ -14,7 +14,7 @@ import numpy as np
 
 from mpm_verify.cases.harness.refinement import Series, collect
 from mpm_verify.cases.harness.study import Head, ResultRecord, head, without
-from mpm_verify.cases.judging.fit import Fit
+from mpm_verify.cases.judging.fit import Fit, slopes
 from mpm_verify.solver.failure import Failure, FailureKind
 
 Run = Any  # of any case with refinements
@@ -34,7 +34,7 @@ class TimeAxis:
     @property
     def orders(self) -> tuple[float | None, ...]:
         """Local order in the time step (n-1,), None where an error is zero. An error of space makes it small."""
-        return _slopes(self.courants, self.errors)
+        return slopes(self.courants, self.errors)
 
     @property
     def shares(self) -> tuple[float, ...]:
@@ -53,7 +53,7 @@ class ParticleAxis:
     @property
     def orders(self) -> tuple[float | None, ...]:
         """Local order in the spacing of the particles, dx / sqrt(ppc), (n-1,)."""
-        return _slopes([1 / sqrt(count) for count in self.ppc], self.errors)
+        return slopes([1 / sqrt(count) for count in self.ppc], self.errors)
 
 
 @dataclass(frozen=True)
@@ -158,14 +158,3 @@ def middle(errors: Sequence[float]) -> float:
 def crossed(result: Result | None) -> float | None:
     """Faces of cells that a particle passed in the whole run, on average; None where the run is not done."""
     return result.crossings / result.particles if result else None
-
-
-def local(pairs: Sequence[tuple[float, float]]) -> list[float | None]:
-    """Local orders (n-1,) of (size, error) pairs, coarse to fine; None where an error is zero."""
-    return list(_slopes([h for h, _ in pairs], [e for _, e in pairs]))
-
-
-def _slopes(sizes: Sequence[float], errors: Sequence[float]) -> tuple[float | None, ...]:
-    """log(e1/e2) / log(h1/h2) of neighbours."""
-    steps = zip(sizes[:-1], sizes[1:], errors[:-1], errors[1:], strict=True)
-    return tuple(log(a / b) / log(s / t) if a > 0 and b > 0 else None for s, t, a, b in steps)

@@ -4,12 +4,13 @@ A case adds its own fields: its Run is a frozen dataclass below RunRecord whose 
 have, its Result one below ResultRecord (see cases/harness/case.py).
 """
 
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import dataclass, field, fields
 from math import inf
 from typing import Any, ClassVar, Generic, Literal, TypeVar
 
 from mpm_verify.cases.judging.records import Expectation
 from mpm_verify.solver.failure import Failure
+from mpm_verify.solver.plugins import parameters_of
 
 FORMAT = 2  # of study.json and of every Result; a reader refuses another number
 REFINED = ("cells", "courant", "offset")  # fields in which the runs of one refinement differ
@@ -151,4 +152,4 @@ def without(name: str, of: Head) -> Head:
 
 def parameters(kind: str, plugin: Any) -> dict[str, float | str]:
     """Every parameter of a plug-in, the defaults too, each named after its kind."""
-    return {f"{kind} {key}": value for key, value in asdict(plugin).items()}
+    return {f"{kind} {key}": getattr(plugin, item.name) for key, item in parameters_of(plugin).items()}

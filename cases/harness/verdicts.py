@@ -4,9 +4,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from mpm_verify.cases.harness.axes import crossed, error, level, local, middle, replicated
+from mpm_verify.cases.harness.axes import crossed, error, level, middle, replicated
 from mpm_verify.cases.harness.refinement import Series, collect
 from mpm_verify.cases.harness.study import Head, QuantityPlan, ResultRecord, Study, without
+from mpm_verify.cases.judging.fit import local
 from mpm_verify.cases.judging.order import Expectation, Level, Quantity, Verdict, judge, judge_family
 from mpm_verify.cases.judging.records import Ended
 from mpm_verify.cases.judging.stall import BELOW, USUAL, Measured, Peer, Stall, explain

@@ -8,6 +8,7 @@ SciPy is imported where it is called: the records of order.py are read by comman
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from math import log
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +29,17 @@ def local_orders(h: Array, error: Array) -> Array:
     """Order between neighbouring levels, (n-1,)."""
     orders: Array = np.diff(np.log(error)) / np.diff(np.log(h))
     return orders
+
+
+def local(pairs: Sequence[tuple[float, float]]) -> list[float | None]:
+    """Local orders (n-1,) of (size, error) pairs, coarse to fine; None where an error is zero."""
+    return list(slopes([h for h, _ in pairs], [e for _, e in pairs]))
+
+
+def slopes(sizes: Sequence[float], errors: Sequence[float]) -> tuple[float | None, ...]:
+    """log(e1/e2) / log(h1/h2) of neighbours."""
+    steps = zip(sizes[:-1], sizes[1:], errors[:-1], errors[1:], strict=True)
+    return tuple(log(a / b) / log(s / t) if a > 0 and b > 0 else None for s, t, a, b in steps)
 
 
 def asymptotic_window(orders: Array) -> tuple[int, int] | None:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from math import log
 
-from mpm_verify.cases.harness.axes import local
+from mpm_verify.cases.judging.fit import local
 from mpm_verify.cases.judging.records import Ended
 
 USUAL, BELOW = 2.0, 0.2  # order of u of every method here before particles cross cells, and the band of the order rule

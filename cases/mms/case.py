@@ -5,15 +5,17 @@ The contract of a case is told in cases/harness/case.py.
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
-from math import ceil, sqrt
+from math import sqrt
 from typing import Any
 
 import numpy as np
 
+from mpm_verify.cases.harness.build import Asked
 from mpm_verify.cases.harness.environment import environment
 from mpm_verify.cases.harness.memory import forget_peak, peak_memory
+from mpm_verify.cases.harness.progress import Progress
 from mpm_verify.cases.harness.store import Arrays
 from mpm_verify.cases.harness.study import parameters
 from mpm_verify.cases.judging.records import Expectation
@@ -22,14 +24,26 @@ from mpm_verify.cases.mms.gaps import LOOKS, Gaps
 from mpm_verify.cases.mms.norms import Norms, compare, new_shares
 from mpm_verify.cases.mms.packing import Packing
 from mpm_verify.cases.mms.run import AXES, NORMS, QUANTITIES, QUICK, Result, Run
+from mpm_verify.cases.mms.time_step import check_time_steps, time_steps, width
 from mpm_verify.mms.audit import audit
 from mpm_verify.mms.blind_spots import BlindSpot
+from mpm_verify.mms.cells import fitting, ratio
 from mpm_verify.mms.energy import check_energy
 from mpm_verify.mms.manufacture import Manufactured, manufacture
 from mpm_verify.solver.boundary import box, moving
 from mpm_verify.solver.failure import Failure, FailureKind, RunFailed
 from mpm_verify.solver.layout import CENTRED, Layout, parallelograms
-from mpm_verify.solver.plugins import LAYOUTS, MATERIALS, METHODS, SOLUTIONS, TRANSFERS, create, is_file, load
+from mpm_verify.solver.plugins import (
+    LAYOUTS,
+    MATERIALS,
+    METHODS,
+    SOLUTIONS,
+    TRANSFERS,
+    create,
+    is_file,
+    load,
+    on_screen,
+)
 from mpm_verify.solver.plugins import canonical as canonical_name
 from mpm_verify.solver.state import Floats, Grid, Particles
 from mpm_verify.solver.step import Model, Scheme, advance, check_time_step
@@ -48,7 +62,7 @@ def title(runs: Sequence[Run]) -> str:
     methods, solutions = (tuple(dict.fromkeys(getattr(run, key) for run in runs)) for key in ("method", "solution"))
     named = " and ".join(m.upper() for m in methods) if len(methods) < 4 else f"{len(methods)} methods"
     several = "solutions" if len(solutions) > 1 else "solution"
-    return f"{named} against the manufactured {several} {', '.join(solutions)}"
+    return f"{named} against the manufactured {several} {', '.join(map(on_screen, solutions))}"
 
 
 def canonical(values: dict[str, Any]) -> dict[str, Any]:
@@ -75,16 +89,27 @@ def check(runs: Sequence[Run]) -> None:
             from mpm_verify.mms.check import check as check_solution  # derives the fields: some tenths of a second
 
             check_solution(solution, material, tuple(sorted(counts)))
+        mine = [run for run in runs if (run.solution, run.material) == (specification, model) and not run.force]
+        if mine:
+            check_time_steps(specification, solution, material, mine, sorted({run.courant for run in mine}))
+
+
+def parts(asked: Asked) -> list[Asked]:
+    """The same asked for with cells that fill the body of each solution, where no cells were asked for."""
+    solutions = asked.values.get("solution", (Run.solution,))
+    if "cells" in asked.values or not any(is_file(one) for one in solutions):
+        return [asked]
+    usual = (QUICK if asked.quick else AXES)["cells"]
+    return [
+        replace(asked, values={**asked.values, "solution": (one,), "cells": fitting(create(SOLUTIONS, one), usual)})
+        for one in solutions
+    ]
 
 
 def multiple(run: Run) -> int:
     """Number of cells of the width whose multiples fill the body; 1 for those of this package, which are square."""
-    if not is_file(run.solution):
-        return 1
-    from mpm_verify.mms.check import sides  # see check
-
-    ratio = sides(create(SOLUTIONS, run.solution))
-    return ratio.denominator if ratio else 1
+    sides = ratio(create(SOLUTIONS, run.solution)) if is_file(run.solution) else None
+    return sides.denominator if sides else 1
 
 
 def expectation(run: Run, quantity: str, norm: str) -> Expectation | None:
@@ -129,8 +154,7 @@ def setup(run: Run) -> tuple[Model, Comparison, int]:
     free = solution.boundary == "free"  # no wall ties the grid to the body: the offset moves the grid
     shift = -dx * np.array(run.offset) if free else np.zeros(2)
     grid = Grid(dx, solution.lower - below + shift, solution.upper + above + shift)
-    steps = ceil(solution.duration / (run.courant * grid.dx / solution.C) * (1 - 1e-12))
-    dt = solution.duration / steps
+    steps, dt = time_steps(solution, grid.dx, run.courant)
     behind = 0.5 * dt if run.staggered else 0.0
 
     exact, basis = manufactured(run.solution, run.material), load(METHODS, run.method)()
@@ -144,8 +168,9 @@ def setup(run: Run) -> tuple[Model, Comparison, int]:
     walls = moving(grid, solution.walls) if solution.boundary == "moving" else box(grid, solution.boundary)
     model = Model(grid, particles, basis, material, walls, dt, scheme)
     transfer.start(model, lambda X: velocity_gradient(exact, X, -behind, 1e-3 * dt))
-    packing = Packing(exact, layout, dx) if run.layout != "uniform" or len(layout) <= COUNTED else None
-    norms, gaps = Norms(len(particles), float(particles.V0.mean())), Gaps(layout)
+    every = max(1, steps // LOOKS)
+    packing = Packing(exact, layout, dx, every) if run.layout != "uniform" or len(layout) <= COUNTED else None
+    norms, gaps = Norms(len(particles), float(particles.V0.mean())), Gaps(layout, every)
     return model, Comparison(exact, norms, gaps, packing, new_shares(particles), behind), steps
 
 
@@ -163,11 +188,6 @@ def velocity_gradient(exact: Manufactured, X: Floats, t: float, short: float) ->
     return L
 
 
-def width(solution: Any) -> float:
-    """Extent along x, the one that cells are counted along."""
-    return float(solution.upper[0] - solution.lower[0])
-
-
 @cache
 def manufactured(solution: str, material: str) -> Manufactured:
     """The exact solution of two specifications, derived and compiled once in a process."""
@@ -177,7 +197,7 @@ def manufactured(solution: str, material: str) -> Manufactured:
 
 @cache
 def audited(solution: str, material: str) -> tuple[BlindSpot, ...]:
-    """The auditor's lines on two specifications, once in a process."""
+    """The auditor's findings on two specifications, once in a process."""
     return audit(manufactured(solution, material), create(SOLUTIONS, solution), create(MATERIALS, material)).spots
 
 
@@ -185,20 +205,15 @@ def execute(run: Run, tick: Callable[[float], None] = lambda share: None) -> tup
     """Run to the end, or to where it cannot go on: a failed run is a Result. `tick` hears the share that is done."""
     forget_peak()
     model, comparison, steps = setup(run)
-    often = max(1, steps // LOOKS)
+    model.watch(comparison.gaps, *filter(None, [comparison.packing]), Progress(tick, steps))
     failure, started, used = None, time.perf_counter(), time.process_time()
     try:
         if not run.force:
             check_time_step(model)
         if comparison.packing:
             comparison.packing.begin(model, refuse=run.layout != "uniform")
-        for step in range(steps):
+        for _ in range(steps):
             advance(model, comparison)
-            if step % often == 0:
-                comparison.gaps.look(model)
-                if comparison.packing:
-                    comparison.packing.look(model)
-            tick((step + 1) / steps)
         comparison(model.particles, model.time)
     except RunFailed as ended:
         failure = ended.failure

@@ -5,22 +5,24 @@ from dataclasses import InitVar, dataclass, field
 import numpy as np
 
 from mpm_verify.solver.layout import Layout, shared_corners
+from mpm_verify.solver.model import Model, Observer
 from mpm_verify.solver.state import Floats, Ints
-from mpm_verify.solver.step import Model
 
 LOOKS = 16  # in a run
 PATCHES, PATCH = 8, 200  # particles are looked at in so many places, and so many together in each
 
 
 @dataclass
-class Gaps:
+class Gaps(Observer):
     """How far domains are from tiling the body: rms distance of the copies of a corner from their middle.
 
     Neighbours of the layout share corners; where each has its own, there is a gap or an overlap. In shares of the
-    particle spacing, the largest of all looks. `most` is None for methods that know points only.
+    particle spacing, the largest of all looks, one `every` so many steps. `most` is None for methods that know points
+    only.
     """
 
     layout: InitVar[Layout]
+    every: int = 1
     most: float | None = None
     chosen: Ints = field(init=False)  # particles, by their rows in the layout
     owner: Ints = field(init=False)  # of each corner of theirs, (n*4,): which shared corner it is a copy of
@@ -31,6 +33,11 @@ class Gaps:
         bent = None if layout.bent is None else layout.bent[self.chosen]
         part = Layout(layout.X[self.chosen], layout.V0[self.chosen], layout.r0[self.chosen], bent)
         self.owner = shared_corners(part)[1].reshape(-1)
+
+    def after_step(self, model: Model) -> None:
+        """Measure after the first step, and when it is time again."""
+        if (model.steps - 1) % self.every == 0:
+            self.look(model)
 
     def look(self, model: Model) -> None:
         """Measure now."""

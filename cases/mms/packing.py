@@ -13,20 +13,21 @@ from mpm_verify.cases.mms.run import Packed
 from mpm_verify.mms.manufacture import Manufactured
 from mpm_verify.solver.failure import FailureKind, RunFailed
 from mpm_verify.solver.layout import Layout, shared_corners
+from mpm_verify.solver.model import Model, Observer
 from mpm_verify.solver.state import Floats, Grid, Ints
-from mpm_verify.solver.step import Model
 
 Mask = NDArray[np.bool_]
 STRICTLY = 1e-6  # cells: an edge so near to a face runs along it and cuts no cell
 
 
 @dataclass
-class Packing:
-    """Counts the particles in full cells while a run goes on. `fewest` and its `cell` are those of all looks."""
+class Packing(Observer):
+    """Counts the particles in full cells, one look `every` so many steps; `fewest` and its `cell` are those of all."""
 
     exact: Manufactured
     layout: Layout
     dx: float
+    every: int = 1
     fewest: int | None = None
     cell: tuple[int, int] | None = None
     widest: float = field(init=False)
@@ -38,6 +39,11 @@ class Packing:
         sides = np.roll(corners, -1, axis=1) - corners
         self.widest = float(np.sqrt((sides**2).sum(axis=-1).max()) / self.dx)
         self.edge, self.steepest = outline(self.layout)
+
+    def after_step(self, model: Model) -> None:
+        """Count after the first step, and when it is time again."""
+        if (model.steps - 1) % self.every == 0:
+            self.look(model)
 
     def look(self, model: Model) -> None:
         """Count now."""

@@ -1,4 +1,4 @@
-"""The turning block held against its closed form, its inertial share, and every negative control on the same run."""
+"""The turning block held against its closed form, its inertial fraction, and every negative control on the same run."""
 
 from collections.abc import Mapping
 from concurrent.futures import Executor, Future
@@ -73,7 +73,7 @@ def checks(block: Block, found: Found) -> list[Check]:
         Check(GROUP, "1 cm: co-rotated shear stress, rms over time", shear, 0.005, "at most", "zero by symmetry"),
         Check(GROUP, "1 m: vertical stress in the ramp, rms distance", ripple, 0.003, "at most",
               "linear waves in a column under growing gravity"),
-        Check(GROUP, "1 m: inertial share of the mean vertical stress", away[0], away[1], "absolute",
+        Check(GROUP, "1 m: inertial fraction of the mean vertical stress", away[0], away[1], "absolute",
               "the same box at rest, with inertial forces", 0.003),
         Check(GROUP, "1 m: largest distance in the turn", misses(large, block).max(), misses(small, block).max(),
               "at least", "inertia and waves that the small block does not have"),

@@ -9,12 +9,11 @@ from mpm_verify.cases.harness.environment import environment
 from mpm_verify.cases.objectivity import block as full
 from mpm_verify.cases.objectivity import rates as kinematic
 from mpm_verify.cases.objectivity.exact import SIMPLE_SHEAR, ramped_column
+from mpm_verify.cases.objectivity.findings import CONTROLS, ObjectivityRemark, findings
 from mpm_verify.cases.objectivity.turning_block import Block
-from mpm_verify.cases.objectivity.words import words
 from mpm_verify.solver.plugins import NEGATIVE_CONTROLS, RATES, available
 from mpm_verify.solver.state import Floats
 
-CONTROLS = "Negative controls"
 MISS = 0.1  # of the stress: what a negative control has to miss by
 COARSE = 4  # steps of the stretched turn at which a control of first order is told from a rate
 
@@ -31,12 +30,12 @@ def examine(block: Block, executor: Executor, command: str) -> Examination:
     kept = curves(block, found, errors, controls)
     return Examination(
         "objectivity",
-        "Frame indifference: the paper's rotated block, and what it can show",
+        "Frame indifference of the paper's rotated block",
         command,
-        lead(checks),
+        tuple(findings(block, checks, kept, errors)),
         tuple(checks),
         parameters(block),
-        notes(block, kept),
+        ORIGINS,
         environment(),
         kept,
     )
@@ -92,37 +91,31 @@ def curves(block: Block, found: full.Found, errors: dict[str, Floats], controls:
     return kept
 
 
-def parameters(block: Block) -> dict[str, str]:
-    """Of the run, and which the paper does not give."""
+def parameters(block: Block) -> dict[str, float | str]:
+    """Parameters of the run; ORIGINS says which the paper does not give."""
     return {
-        "E": f"{block.E:g} Pa (paper)",
-        "nu": f"{block.nu:g} (paper)",
-        "side of the block": f"{block.L:g} m (paper: unit square), and a hundredth of it",
-        "gravity": f"{block.g:g} m/s^2, grown from 0 in the first second (paper: its section 3)",
-        "turn": "90 degrees in the second second, about the middle of the block, at a constant rate from its start",
-        "density": f"{block.rho0:g} kg/m^3 (not given; that of the paper's Table 1)",
-        "grid": f"{block.cells} cells along the block, {block.ppc} particles per cell (not given)",
-        "time step": f"{1 / block.steps:.3g} s, Courant number {block.courant:g}",
-        "unit of stress": f"mean vertical stress at the end of the ramp, rho0 g L / 2 = {abs(block.sigma_v):g} Pa",
-        "inertial share w^2 L / g": f"{block.share:.3g}, and {block.share / 100:.3g} for the small block",
+        "E [Pa]": block.E,
+        "nu": block.nu,
+        "side of the block [m]": block.L,
+        "gravity [m/s^2]": block.g,
+        "density [kg/m^3]": block.rho0,
+        "cells along the block": block.cells,
+        "particles per cell": block.ppc,
+        "time step [s]": 1 / block.steps,
+        "Courant number": block.courant,
+        "unit of stress [Pa]": abs(block.sigma_v),
+        "inertial fraction w^2 L / g": block.share,
     }
 
 
-def lead(checks: list[Check]) -> str:
-    """What came out, in words."""
-    missed = sum(check.outcome != "PASS" for check in checks)
-    if missed:
-        return f"{missed} of {len(checks)} checks did not pass; they stand first."
-    return (
-        "The stress of the block turns with it: horizontal and vertical stress swap, and the shear stress in the axes "
-        "of the laboratory reaches 0.286 of the vertical stress at 45 degrees, as it must. Every wrong reading is "
-        "seen, the formulas as printed in the paper among them; but not all of them in Figure 2."
-    )
-
-
-def notes(block: Block, kept: Curves) -> dict[str, tuple[str, ...]]:
-    """What one should know of each part, with the numbers of this run."""
-    names = [f"run/{name}" for name in (full.PRINTED, full.SMALL, full.REST)]
-    if not all(name in kept for name in names):
-        return {}
-    return words(block, *(kept[name] for name in names))
+ORIGINS: dict[str, str] = {
+    "E [Pa]": ObjectivityRemark.PAPER,
+    "nu": ObjectivityRemark.PAPER,
+    "side of the block [m]": ObjectivityRemark.UNIT_SQUARE,
+    "gravity [m/s^2]": ObjectivityRemark.GROWN,
+    "density [kg/m^3]": ObjectivityRemark.TABLE_1,
+    "cells along the block": ObjectivityRemark.NOT_GIVEN,
+    "particles per cell": ObjectivityRemark.NOT_GIVEN,
+    "unit of stress [Pa]": ObjectivityRemark.END_OF_RAMP,
+    "inertial fraction w^2 L / g": ObjectivityRemark.OF_THE_SMALL,
+}

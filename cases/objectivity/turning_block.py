@@ -10,7 +10,7 @@ neighbours are partly empty, which no traction would balance. The velocity of a 
 (R(w dt) - I)(x - c)/dt, which hats hold exactly; so the box turns by exactly w dt a step.
 
 With `frame` nothing turns: the same box at rest feels the inertial forces of the turning one (centrifugal, Coriolis).
-That run shows the inertial share alone, without any rotation of stress.
+That run shows the inertial fraction alone, without any rotation of stress.
 """
 
 from dataclasses import dataclass, field
@@ -74,7 +74,7 @@ class Block:
 
     @property
     def share(self) -> float:
-        """Inertial share w^2 L / g."""
+        """Inertial fraction w^2 L / g."""
         return OMEGA**2 * self.L / self.g
 
 

@@ -31,6 +31,11 @@ class AxisAligned(Square):
         super().__post_init__()
         self.limit("A", self.A, self.L / 6.283185307179586)
 
+    @property
+    def amplitude(self) -> float:
+        """A over the side."""
+        return abs(self.A) / self.L
+
     def displacement(self, X: Sequence["sp.Symbol"], t: "sp.Symbol") -> "sp.Matrix":
         """u of the reference place X and the time t."""
         import sympy as sp

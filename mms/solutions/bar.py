@@ -46,6 +46,11 @@ class Bar(Square):
             raise ValueError(f"axis = {self.axis} must be 0 for x or 1 for y")
         self.limit("A", self.A, self.L / (self.n * pi))
 
+    @property
+    def amplitude(self) -> float:
+        """A over the side."""
+        return abs(self.A) / self.L
+
     def displacement(self, X: Sequence["sp.Symbol"], t: "sp.Symbol") -> "sp.Matrix":
         """u of the reference place X and the time t."""
         import sympy as sp

@@ -29,6 +29,11 @@ class ClampedShear(Square):
         super().__post_init__()
         self.limit("G", self.G, self.L / 6.283185307179586)
 
+    @property
+    def amplitude(self) -> float:
+        """G over the side."""
+        return abs(self.G) / self.L
+
     def displacement(self, X: Sequence["sp.Symbol"], t: "sp.Symbol") -> "sp.Matrix":
         """u of the reference place X and the time t."""
         import sympy as sp

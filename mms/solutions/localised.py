@@ -39,6 +39,11 @@ class Localised(Square):
             raise ValueError(f"n = {self.n} must be a whole number, 2 or more")
         self.limit("A", self.A, self.L / (pi * sqrt(self.n) * (1 - 1 / self.n) ** ((self.n - 1) / 2)))
 
+    @property
+    def amplitude(self) -> float:
+        """A over the side."""
+        return abs(self.A) / self.L
+
     def displacement(self, X: Sequence["sp.Symbol"], t: "sp.Symbol") -> "sp.Matrix":
         """u of the reference place X and the time t."""
         import sympy as sp

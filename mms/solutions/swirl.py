@@ -40,6 +40,11 @@ class Swirl(Square):
         self.limit("A", self.A, 1.5)
         self.limit("B", self.B, 0.3)
 
+    @property
+    def amplitude(self) -> float:
+        """Larger of the angle and the swelling."""
+        return max(abs(self.A), abs(self.B))
+
     def displacement(self, X: Sequence["sp.Symbol"], t: "sp.Symbol") -> "sp.Matrix":
         """u of the reference place X and the time t."""
         import sympy as sp

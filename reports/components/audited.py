@@ -1,28 +1,26 @@
-"""What the auditor said of a solution, as stored with the runs on it: what they cannot see, and what they can."""
+"""What the auditor found of a solution, as stored with the runs on it: what they cannot see, and what they can."""
 
 from mpm_verify.mms.blind_spots import ALWAYS, BlindSpot
 from mpm_verify.reports.frames import Record
-
-ORDERS = {spot.key for spot in ALWAYS}  # these hold for every study, and are said once
+from mpm_verify.reports.sentences import blind_spots as words
 
 
 def spots(record: Record, solution: str) -> tuple[BlindSpot, ...]:
-    """The lines of the auditor; where no run has stored any, those that hold for every solution."""
+    """The findings of the auditor; where no run has stored any, those that hold for every solution."""
     found = (r.audit for run in record.study.runs if run.solution == solution and (r := record.result(run)) and r.audit)
     return next(found, ALWAYS)
 
 
-def blind(record: Record, solution: str) -> list[BlindSpot]:
-    """What a study of the solution cannot see."""
-    return [spot for spot in spots(record, solution) if spot.blind]
+def blind(record: Record, solution: str) -> list[str]:
+    """Sentences on what a study of the solution cannot see."""
+    return [words.sentence(spot) for spot in spots(record, solution) if spot.blind]
 
 
-def seen(record: Record, solution: str) -> list[BlindSpot]:
-    """What it can, and how strong it is."""
-    return [spot for spot in spots(record, solution) if not spot.blind]
+def seen(record: Record, solution: str) -> list[str]:
+    """Sentences on what it can, and how strong it is."""
+    return [words.sentence(spot) for spot in spots(record, solution) if not spot.blind]
 
 
 def short(record: Record, solution: str) -> str:
-    """First sentences of what cannot be seen, for a card: empty if there is nothing but what always holds."""
-    sentences = [spot.sentence for spot in blind(record, solution) if spot.key not in ORDERS]
-    return " ".join(f"{sentence.split('. ')[0].rstrip('.')}." for sentence in sentences)
+    """What cannot be seen, for a card: empty if there is nothing but what always holds, which is said once."""
+    return " ".join(words.unseen(spot) for spot in spots(record, solution) if spot.blind and spot not in ALWAYS)

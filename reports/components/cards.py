@@ -6,7 +6,8 @@ from math import log
 
 from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.cases.judging.order import Outcome
-from mpm_verify.reports.components import audited, words
+from mpm_verify.reports import words
+from mpm_verify.reports.components import audited
 from mpm_verify.reports.components.stalls import short
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences import commands, verdicts
@@ -82,7 +83,7 @@ def _card(record: Record, found: Finding) -> Card:
         plain,
         short(found),
         audited.short(record, d.run.solution),
-        tuple(spot.sentence for spot in audited.seen(record, d.run.solution)),
+        tuple(audited.seen(record, d.run.solution)),
     )
 
 

@@ -12,6 +12,7 @@ from mpm_verify.reports.components.film import Film
 from mpm_verify.reports.components.page import Add, Image, adder, template
 from mpm_verify.reports.components.show import Table
 from mpm_verify.reports.sentences import failures
+from mpm_verify.reports.sentences.remarks import lead, parameters
 
 WAYS = {"relative": "± {} of it", "absolute": "± {}", "at least": "or more", "at most": "or less"}
 
@@ -46,10 +47,11 @@ def render(
         missed = [check for check in examination.checks if check.outcome != "PASS"]
         text = template("examination.html.j2").render(
             examination=examination,
+            lead=lead(examination),
             missed=checks_table("Checks that did not pass", missed, group=True) if missed else None,
             sections=sections(examination, adder(folder / "figures", kinds=kinds)),
             parameters=Table(
-                "Parameters", ("parameter", "value"), tuple(examination.parameters.items()), texts=("value",)
+                "Parameters", ("parameter", "value"), tuple(parameters(examination).items()), texts=("value",)
             ),
             environment=Table(
                 "What computed it", ("", "version"), tuple(examination.environment.items()), texts=("version",)

@@ -8,7 +8,7 @@ from mpm_verify.cases.harness.refinement import Series
 from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.cases.judging.order import Outcome
 from mpm_verify.cases.mms.run import NORMS, QUANTITIES, Run
-from mpm_verify.reports.components import words
+from mpm_verify.reports import words
 from mpm_verify.reports.figures.local_orders import orders
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences import verdicts

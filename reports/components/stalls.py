@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from mpm_verify.cases.harness.verdicts import STALLS, Finding
 from mpm_verify.cases.judging.stall import Stall
-from mpm_verify.reports.components import words
+from mpm_verify.reports import words
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences import stalls as sentences
 

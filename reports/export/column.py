@@ -4,13 +4,16 @@ from dataclasses import asdict
 from typing import Any
 
 from mpm_verify.reports.frames import Record
+from mpm_verify.reports.sentences import column as words
+from mpm_verify.reports.sentences.remarks import lead
 
 
 def more(record: Record) -> dict[str, Any]:
-    """`lead`, `paper` and `refinement`."""
+    """`lead`, `findings`, `paper` and `refinement`."""
     found = record.analysis.more
     return {
-        "lead": found.examination.lead,
-        "paper": [asdict(claim) for claim in found.claims],
+        "lead": lead(found.examination),
+        "findings": [asdict(finding) for finding in found.examination.findings],
+        "paper": [{"says": words.says(claim), **asdict(claim), "found": words.found(claim)} for claim in found.claims],
         "refinement": [asdict(one) for one in found.refined],
     }

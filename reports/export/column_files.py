@@ -6,13 +6,13 @@ from typing import Any
 
 import pandas as pd
 
-from mpm_verify.cases.column.claims import told
 from mpm_verify.cases.column.exam import ColumnAnalysis
 from mpm_verify.cases.column.exam import curves as read_curves
 from mpm_verify.cases.column.run import ColumnRun
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.reports.export.vtk import write_series
 from mpm_verify.reports.frames import joined
+from mpm_verify.reports.sentences import column as words
 from mpm_verify.reports.sentences import failures
 
 MEASURED = {  # measured numbers that have the name of a parameter: their names in tables
@@ -31,8 +31,8 @@ def tables(collapse: ColumnAnalysis, store: Store, folder: Path) -> None:
             head = {"digest": run.digest, "status": result.status, "failure": failure}
             rows.append(joined(head, parameters, measured(result.values)))
             columns = {name: values for name, values in read_curves(store, result).items() if values.ndim == 1}
-            words = {name: told(name, getattr(run, name)) for name in collapse.study.axes}
-            curves.append(pd.DataFrame(joined({"digest": run.digest}, words, measured(columns))))
+            named = {axis: words.value(axis, getattr(run, axis)) for axis in collapse.study.axes}
+            curves.append(pd.DataFrame(joined({"digest": run.digest}, named, measured(columns))))
     pd.DataFrame(rows).to_csv(folder / "runs.csv", index=False)
     if curves:
         pd.concat(curves).to_csv(folder / "curves.csv", index=False, float_format="%.7g")

@@ -1,6 +1,6 @@
 """A study in a few lines of Markdown, for the summary of a CI job."""
 
-from mpm_verify.reports.components import words
+from mpm_verify.reports import words
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences import commands, verdicts
 

@@ -3,7 +3,6 @@
 The band of the experiment is shaded where it is known; it is no curve. Time is counted in sqrt(h0/g).
 """
 
-import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -19,6 +18,7 @@ from mpm_verify.cases.column.experiment import Experiment, experiment
 from mpm_verify.cases.column.refined import Refined
 from mpm_verify.cases.column.run import ColumnRun
 from mpm_verify.reports.figures import style
+from mpm_verify.reports.sentences import column as words
 from mpm_verify.solver.state import Floats
 
 WIDE = 5.4
@@ -204,11 +204,11 @@ def refined(series: Sequence[Refined], xlabel: str) -> Figure:
         for place, one in enumerate(series):
             values = np.array([value for _, value in one.levels])
             axes.plot(range(len(values)), values / values[0], marker=style.MARKERS[place % len(style.MARKERS)],
-                      label=one.quantity, **stroke(place))  # fmt: skip
-        numbers = [re.sub(r"[^\d.]", "", name) for name, _ in series[0].levels]  # the axis says of what
+                      label=words.quantity(one.quantity), **stroke(place))  # fmt: skip
+        numbers = [f"{value:g}" for value, _ in series[0].levels]  # the axis says of what
         axes.set_xticks(range(len(numbers)), numbers)
         axes.invert_xaxis()
-        legend(figure, [one.quantity for one in series])
+        legend(figure, [words.quantity(one.quantity) for one in series])
     return figure
 
 

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure, SubFigure
 from matplotlib.ticker import NullLocator
 
 from mpm_verify.cases.harness.refinement import Series
-from mpm_verify.reports.components import words
+from mpm_verify.reports import words
 from mpm_verify.reports.figures import style
 from mpm_verify.reports.frames import Record
 

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from mpm_verify.cases.mms.run import Run
-from mpm_verify.reports.components import words
+from mpm_verify.reports import words
 from mpm_verify.reports.figures import style
 from mpm_verify.reports.frames import Record
 

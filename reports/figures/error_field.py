@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from mpm_verify.cases.harness.store import Arrays
 from mpm_verify.cases.mms.run import Run
-from mpm_verify.reports.components import words
+from mpm_verify.reports import words
 from mpm_verify.reports.figures import style
 from mpm_verify.reports.frames import Record
 

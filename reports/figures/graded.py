@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 from mpm_verify.cases.mms.graded import kind
 from mpm_verify.cases.mms.run import Run
-from mpm_verify.reports.components import words
+from mpm_verify.reports import words
 from mpm_verify.reports.figures import style
 from mpm_verify.reports.figures.cost import Line, Row, cost_figure
 from mpm_verify.reports.frames import Record

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from mpm_verify.cases.harness.refinement import Series
 from mpm_verify.cases.judging.fit import local_orders
-from mpm_verify.reports.components import words
+from mpm_verify.reports import words
 from mpm_verify.reports.figures import style
 from mpm_verify.reports.figures.convergence import methods
 from mpm_verify.reports.frames import Record

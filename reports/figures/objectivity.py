@@ -1,4 +1,4 @@
-"""The paper's Figure 2 and what belongs to it: stress of a turned block, its inertial share, orders, rates in shear."""
+"""The paper's Figure 2 and what belongs to it: stress of a turned block, inertia, orders, rates in shear."""
 
 from collections.abc import Mapping, Sequence
 

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
 from mpm_verify.cases.harness.axes import ParticleAxis, particle_axes
-from mpm_verify.reports.components import words
+from mpm_verify.reports import words
 from mpm_verify.reports.figures import style
 from mpm_verify.reports.figures.convergence import methods
 from mpm_verify.reports.frames import Record

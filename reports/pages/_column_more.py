@@ -10,8 +10,9 @@ from mpm_verify.reports.components.examined import Section
 from mpm_verify.reports.components.film import EACH, MOST, film
 from mpm_verify.reports.components.page import Add
 from mpm_verify.reports.components.show import Table
-from mpm_verify.reports.components.words import DASH, percent
 from mpm_verify.reports.figures import column as draw
+from mpm_verify.reports.sentences import column as words
+from mpm_verify.reports.words import DASH, percent
 
 FILMS = 8  # of a page
 AXES = {"cells": "cells of the width", "ppc": "particles per cell", "courant": "Courant number"}
@@ -24,18 +25,19 @@ SET_UP = (
 def refinement(collapse: ColumnAnalysis, add: Add) -> Section:
     """Richardson extrapolation where levels are refined, scatter where particles are shifted."""
     figures, rows = [], []
-    heads = ("axis", *(("runs with",) if any(one.runs for one in collapse.refined) else ()))
-    for place, (axis, runs) in enumerate(dict.fromkeys((one.axis, one.runs) for one in collapse.refined)):
-        series = [one for one in collapse.refined if (one.axis, one.runs) == (axis, runs)]
-        image = add(
-            f"refined_{place}", draw.refined(series, f"{AXES[axis]}, finer to the right"), f"Refinement in {axis}."
-        )
+    heads = ("axis", *(("runs with",) if any(one.shared for one in collapse.refined) else ()))
+    named = [(one.axis, words.listed(one.shared), one) for one in collapse.refined]
+    for number, (axis, runs) in enumerate(dict.fromkeys((axis, runs) for axis, runs, _ in named)):
+        series = [one for *of, one in named if tuple(of) == (axis, runs)]
+        drawn = draw.refined(series, f"{AXES[axis]}, finer to the right")
+        image = add(f"refined_{number}", drawn, f"Refinement in {axis}.")
         figures.append(
             (image, f"Refinement in {axis}{f', {runs}' if runs else ''}: each quantity over its finest value.")
         )
         for one in series:
             spread = ", ".join(f"{value:.4f}" for _, value in reversed(one.levels))
-            rows.append((axis, *((runs,) if len(heads) > 1 else ()), one.quantity, spread, *extrapolated(one.found[0])))
+            name = words.quantity(one.quantity)
+            rows.append((axis, *((runs,) if len(heads) > 1 else ()), name, spread, *extrapolated(one.found[0])))
     tables = []
     if rows:
         head = (*heads, "quantity", "coarse to fine [m]", "finest three", "order", "limit", "uncertainty [m]")
@@ -43,15 +45,15 @@ def refinement(collapse: ColumnAnalysis, add: Add) -> Section:
     if collapse.scattered:
         head = ("quantity", "runs with", "runs", "mean [m]", "standard deviation [mm]", "range [mm]", "of the mean")
         tables.append(Table("Scatter over where the particles lie in their cells at first", head, tuple(
-            (one.quantity, one.runs or DASH, str(one.count), f"{one.mean:.4f}", f"{1e3 * one.deviation:.1f}",
-             f"{1e3 * one.reach:.1f}", percent(one.deviation / one.mean))
+            (words.quantity(one.quantity), words.listed(one.shared) or DASH, str(one.count), f"{one.mean:.4f}",
+             f"{1e3 * one.deviation:.1f}", f"{1e3 * one.reach:.1f}", percent(one.deviation / one.mean))
             for one in collapse.scattered), texts=("runs with",)))  # fmt: skip
     text = (
         "There is no exact solution. Where three levels approach a limit from one side, the order is observed, the "
         "limit is extrapolated, with an order of 2 at most, and the uncertainty is the grid convergence index, 1.25 "
         "times the distance from it. Where values go to and fro, or settle at no order of a half or more, nothing "
         "converges on these levels, and the uncertainty is half the range of the three values: no bound. No difference "
-        "means more than the scatter over the places of particles (study offsets)."
+        "means more than the scatter over the positions of particles (study offsets)."
     )
     return Section("refinement", "Solution verification", [text], figures, tables)
 
@@ -76,10 +78,11 @@ def films(collapse: ColumnAnalysis, store: Store, add: Add, ran: Sequence[tuple[
     """Snapshots of the last run, and animations of the first few."""
     run, result = ran[-1]
     image = add("snapshots", draw.snapshots(run, store.arrays(result.digest)), "Layers of sand at a few times.")
-    caption = f"{collapse.label(run)}: the domains of the particles, in layers by the height at which they began."
+    label = words.label(collapse.study, run)
+    caption = f"{label}: the domains of the particles, in layers by the height at which they began."
     shown = ran[:FILMS]
     most, wide = min(EACH, MOST // len(shown)), 1.02 * max(one.values.get("front_999", run.width) for _, one in shown)
-    reels = [film(run, store.arrays(one.digest), collapse.label(run), wide, most) for run, one in shown]
+    reels = [film(run, store.arrays(one.digest), words.label(collapse.study, run), wide, most) for run, one in shown]
     return Section("pictures", "The collapse", figures=[(image, caption)], films=reels, wide=True)
 
 
@@ -95,8 +98,8 @@ def alive(collapse: ColumnAnalysis) -> Section:
             v = result.values
             weight = float(result.parameters["rho0"]) * run.g * run.height
             rows.append((
-                collapse.label(run), f"{float(result.parameters['domain limit']):.3g}", percent(v["most_cut"]),
-                percent(v["void"]), percent(v["idle"]), f"{v['void_strain']:.3g}",
+                words.label(collapse.study, run), f"{float(result.parameters['domain limit']):.3g}",
+                percent(v["most_cut"]), percent(v["void"]), percent(v["idle"]), f"{v['void_strain']:.3g}",
                 f"{v['least_J']:.3g} to {v['most_largest_J']:.3g}", f"{v['crowding']:.2f}", percent(v["most_outside"]),
                 f"{1 + v['most_beyond']:.3g}", f"{v['most_largest_s'] / weight:.1f}", f"{v['most_fastest']:.2f}",
                 f"{v['most_courant']:.2f}", str(result.steps), f"{result.cpu_s:.1f}",
@@ -104,17 +107,17 @@ def alive(collapse: ColumnAnalysis) -> Section:
     text = (
         "A cohesionless column of CPDI particles lives by three things, which can be switched off: domains of limited "
         "length, a memory of void strain, and an update of F that keeps its determinant. The table says how many "
-        "particles they touch: the largest share whose domain is cut, and at the end the share with void strain, and "
-        "without any stress, the volume of void per solid, and the extremes of det F.",
+        "particles they touch: the largest fraction whose domain is cut, at the end the fraction with void strain and "
+        "that without any stress, the volume of void per solid, and the extremes of det F.",
         "A particle with void strain waits for as much compression before it carries again. Most particles of a heap "
         "at rest do so, deep inside too: the others carry the weight and hold them apart, and the heap is larger by "
         "it.",
         "Crowding is the volume that particles keep, det F times what they began with, over the space in which they "
         "are: it should be 1. Above it the heap is too small for its material, which the particles do not notice. It "
-        "grows as particles are fewer, and is 1 with 16 per cell.",
-        "Smoothing p or the deviator alone takes stresses out of the cone of friction: the largest share of particles "
-        "that the forces see outside it, in the plane, and the worst ratio among those under more than 1 % of the "
-        "largest s. The largest s is that of sand striking the floor.",
+        "grows as particles are fewer.",
+        "Smoothing p or the deviator alone takes stresses out of the cone of friction: the largest fraction of "
+        "particles that the forces see outside it, in the plane, and the worst ratio among those under more than 1 % "
+        "of the largest s. The largest s is that of sand striking the floor.",
     )
     return Section("alive", "What keeps it alive, and what leaves the cone", text, tables=[
         Table("Largest values over each run", head, tuple(rows), texts=("det F",))])  # fmt: skip

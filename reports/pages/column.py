@@ -9,14 +9,13 @@ from mpm_verify.cases.harness.store import Store, StoreError
 from mpm_verify.reports.components.examined import Section, checks_table, render
 from mpm_verify.reports.components.page import Add
 from mpm_verify.reports.components.show import Table
-from mpm_verify.reports.components.words import DASH, percent
 from mpm_verify.reports.export.column_files import files, tables
 from mpm_verify.reports.figures import column as draw
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.pages._column_more import alive, films, refinement, set_up
+from mpm_verify.reports.sentences import column as words
 from mpm_verify.reports.sentences import failures
-
-WORDS = {True: "reproduced", False: "not reproduced", None: "cannot be told"}
+from mpm_verify.reports.words import DASH, percent
 
 
 def page(record: Record, vtk: bool = False) -> Path:
@@ -54,14 +53,14 @@ def summary(collapse: ColumnAnalysis, add: Add) -> Section:
     rows = []
     for run in collapse.study.runs:
         result = collapse.results.get(run.digest)
-        rows.append((collapse.label(run), *numbers(run, result)))
+        rows.append((words.label(collapse.study, run), *numbers(run, result)))
     notes = (
         "Front and toe are distances from the wall in m: 99 or 99.9 % of the mass lie within the front, and the heap "
         "that hangs together with the wall ends at its toe. The height is that of the heap next to the wall; “height "
         "falls” is by how much it still fell in the last fifth of the time. A run rests once the kinetic energy that "
         "the grid sees stays below a ten-thousandth of the potential energy there was; grains of the experiment came "
         "to rest after 2.5 to 3.3 √(h₀/g). Area: that below the surface over that of the column; as the surface is "
-        "that of 99 % of the mass, by its centres, it is 1 to 4 % too low."
+        "that of 99 % of the mass, by its centres, it is a little too low."
     )
     return Section("runs", "Runs", [*collapse.study.words, notes], tables=[
         Table("What the runs came to", head, tuple(rows), texts=("outcome",))])  # fmt: skip
@@ -83,10 +82,15 @@ def numbers(run: ColumnRun, result: ColumnResult | None) -> tuple[str, ...]:
 
 def said(collapse: ColumnAnalysis) -> Section:
     """The paper's sentences."""
-    several = any(claim.runs for claim in collapse.claims)
+    several = any(claim.shared for claim in collapse.claims)
     head = ("the paper says", *(("runs with",) if several else ()), "here", "what was found")
     rows = tuple(
-        (claim.says, *((claim.runs,) if several else ()), WORDS[claim.reproduced], claim.found)
+        (
+            words.says(claim),
+            *((words.listed(claim.shared),) if several else ()),
+            words.answer(claim),
+            words.found(claim),
+        )
         for claim in collapse.claims
     )
     return Section("paper", "What the paper says, and what is found here", tables=[
@@ -95,7 +99,7 @@ def said(collapse: ColumnAnalysis) -> Section:
 
 def motion(collapse: ColumnAnalysis, add: Add) -> Section:
     """Fronts and final profiles."""
-    ran, labels = collapse.ran, [collapse.label(one.run) for one in collapse.ran]
+    ran, labels = collapse.ran, [words.label(collapse.study, one.run) for one in collapse.ran]
     return Section("motion", "Run-out", figures=[
         (add("front", draw.fronts(ran, labels), "Front against time; its final values are in the table of runs."),
          "Front against normalised time. Shaded: where the experiment's front rests; dashes: the times of that."),
@@ -108,7 +112,7 @@ def budget(collapse: ColumnAnalysis, add: Add) -> Section:
     """All of the energy of the first run and of the last."""
     figures = []
     for place, key in {0: "first", len(collapse.ran) - 1: "last"}.items():
-        one, label = collapse.ran[place], collapse.label(collapse.ran[place].run)
+        one, label = collapse.ran[place], words.label(collapse.study, collapse.ran[place].run)
         image = add(f"budget_{key}", draw.budget(one), f"Layers of the energy budget over time, {label}.")
         figures.append((image, f"{label[0].upper()}{label[1:]}. The line on top stays at 1 as the budget closes."))
     return Section("budget", "Where the energy goes", figures=figures)
@@ -116,7 +120,7 @@ def budget(collapse: ColumnAnalysis, add: Add) -> Section:
 
 def energy(collapse: ColumnAnalysis, add: Add) -> Section:
     """Energies of all."""
-    ran, labels = collapse.ran, [collapse.label(one.run) for one in collapse.ran]
+    ran, labels = collapse.ran, [words.label(collapse.study, one.run) for one in collapse.ran]
     figures = [
         (add(name, draw.energy(ran, labels, name), f"{name.capitalize()} energy of each run over time."),
          f"The paper's Figure 6: {name} energy.")

@@ -1,6 +1,7 @@
-"""The page of `verify material`: each element test with its curves, then the errors, then the law's own checks."""
+"""The page of `verify material`: each element test with its curves, then the errors, then the material's own checks."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,26 +10,57 @@ from mpm_verify.cases.harness.checks import Curves, Examination
 from mpm_verify.reports.components.examined import Section, checks_table, render
 from mpm_verify.reports.components.page import Add, Image
 from mpm_verify.reports.components.show import Table
-from mpm_verify.reports.components.words import order, sci
 from mpm_verify.reports.figures import element as draw
+from mpm_verify.reports.frames import Record
+from mpm_verify.reports.sentences.remarks import notes
+from mpm_verify.reports.words import order, sci
 
 
-def page(folder: Path, examination: Examination) -> Path:
-    """Write the page; its path. Raises StoreError."""
-    return render(folder, examination, sections, ("svg", "pdf"))  # some two dozen figures: PNG takes half the time
+def page(record: Record, vtk: bool = False) -> Path:
+    """Write the page; its path. There are no snapshots, whatever `vtk` says. Raises StoreError."""
+    found = record.analysis.more.examinations
+    whole = merged(record, list(found.values()))
+    return render(
+        record.store.folder, whole, lambda _, add: every(found, add), ("svg", "pdf")
+    )  # PNG takes half the time
+
+
+def merged(record: Record, found: Sequence[Examination]) -> Examination:
+    """One Examination of all, for what stands once on the page."""
+    first = found[0]
+    study = record.study
+    checks = tuple(check for one in found for check in one.checks)
+    return replace(first, title=study.title, checks=checks, findings=tuple(f for one in found for f in one.findings))
+
+
+def numbered(add: Add, number: int) -> Add:
+    """The same, with a number behind the names of figures."""
+    return lambda key, figure, alt: add(f"{key}_{number}", figure, alt)
+
+
+def every(found: Mapping[str, Examination], add: Add) -> Sequence[Section]:
+    """The sections of each, with its name in front where there are several."""
+    if len(found) == 1:
+        return sections(next(iter(found.values())), add)
+    parts = []
+    for number, (name, one) in enumerate(found.items(), 1):
+        mine = sections(one, numbered(add, number))
+        parts += [replace(part, key=f"{part.key}-{number}", heading=f"{name}: {part.heading}") for part in mine]
+    return parts
 
 
 def sections(examination: Examination, add: Add) -> Sequence[Section]:
-    """A section a test, one for the errors, one for what is known of the law."""
+    """A section a test, one for the errors, one for what is known of the material."""
     names = [name.partition("/")[2] for name in examination.curves if name.startswith("test/")]
-    titles = dict(zip(names, examination.notes, strict=True))
+    noted = dict.fromkeys(finding.group for finding in examination.findings if finding.group)
+    titles = dict(zip(names, noted, strict=True))
     tests = [test(examination, name, titles[name], add) for name in names]
     rest = [group for group in examination.groups if group not in titles.values()]
     known = [checks_table(group, [c for c in examination.checks if c.group == group]) for group in rest]
     own = [
         Section(
             "law",
-            "What is known of the law",
+            "What is known of the material",
             ["Tables, limits and invariants, in runs of 100 steps unless said."],
             (),
             known,
@@ -62,7 +94,7 @@ def test(examination: Examination, name: str, title: str, add: Add) -> Section:
         images.append((add(f"{name}_volume", volume, f"{title}: volume strain."), "Volume strain."))
     checks = [check for check in examination.checks if check.group == title]
     tables = [checks_table("Checks", checks)] if checks else []
-    return Section(name, title, examination.notes[title], images, tables)
+    return Section(name, title, notes(examination, title), images, tables)
 
 
 def steps(examination: Examination, titles: dict[str, str], add: Add) -> Section:

@@ -7,9 +7,9 @@ from matplotlib.figure import Figure
 
 from mpm_verify.cases.harness.store import Store, StoreError
 from mpm_verify.cases.mms.run import QUANTITIES, Run
-from mpm_verify.reports.components import audited, show, show_axes, show_graded, show_runs, words
+from mpm_verify.reports import words
+from mpm_verify.reports.components import audited, show, show_axes, show_graded, show_runs
 from mpm_verify.reports.components.cards import cards, summary
-from mpm_verify.reports.components.cost import compares
 from mpm_verify.reports.components.page import Add, Image, adder, template
 from mpm_verify.reports.components.show_cost import figure_rows, overview
 from mpm_verify.reports.components.stalls import looked, stalls
@@ -23,6 +23,8 @@ from mpm_verify.reports.figures.position import position
 from mpm_verify.reports.figures.time_step import time_step
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.tables import study as tables
+from mpm_verify.reports.tables.cost import compares
+from mpm_verify.solver.plugins import on_screen
 
 TIME = "Error of u in rms against the Courant number on the finest cells, both axes logarithmic; numbers in the table."
 PLACE = "Error of u in rms over the median of its level, with the particles at several places; numbers in the tables."
@@ -91,10 +93,10 @@ def _solution(record: Record, solution: str, folder: Path, field: tuple[int, int
         "particles": [add(f"particles_{m}", drawn, f"{words.method(m)}: {COUNT}") for m, drawn in several.items()],
     }
     if graded.found(record):
-        alt = f"Error of u on {solution} against cost: uniform, graded and thinned layouts."
+        alt = f"Error of u on {on_screen(solution)} against cost: uniform, graded and thinned layouts."
         images["graded"] = add("graded", graded.figure(record, solution), alt)
     return images | {
-        "name": solution,
+        "name": on_screen(solution),
         "panels": [
             add(f"figure1_{norm}", drawn[f"figure1_{norm}"], _alt(record, solution, norm))
             for norm in ("rms", "printed")

@@ -4,21 +4,19 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from mpm_verify.cases.harness.checks import Curves, Examination
+from mpm_verify.cases.objectivity.block import GROUP as RUN
+from mpm_verify.cases.objectivity.block import PRINTED, REST, SMALL
+from mpm_verify.cases.objectivity.findings import CONTROLS, INERTIA
+from mpm_verify.cases.objectivity.rates import FIGURE2 as KINEMATIC
+from mpm_verify.cases.objectivity.rates import ORDERS, SHEAR
 from mpm_verify.reports.components.examined import Section, checks_table, render
 from mpm_verify.reports.components.page import Add
 from mpm_verify.reports.components.show import Table
-from mpm_verify.reports.components.words import sci
 from mpm_verify.reports.figures import objectivity as draw
+from mpm_verify.reports.sentences.remarks import notes
+from mpm_verify.reports.words import sci
 
-KINEMATIC, RUN, ORDERS, SHEAR = (
-    "Figure 2, kinematic",
-    "Figure 2, the CPDI run",
-    "Orders in time",
-    "Rates in simple shear",
-)
-
-MISSES = "Largest miss of each reading, as a share of the stress; ∞ where the run could not go on"
-PRINTED, SMALL, REST = "block of 1 m", "block of 1 cm", "block of 1 m, not turned"
+MISSES = "Largest miss of each negative control, as a fraction of the stress; ∞ where the run failed"
 
 
 def page(folder: Path, examination: Examination) -> Path:
@@ -38,10 +36,6 @@ def of(curves: Curves, start: str) -> Curves:
     return {name[len(start) + 1 :]: curve for name, curve in curves.items() if name.startswith(start + "/")}
 
 
-def _notes(examination: Examination, group: str) -> Sequence[str]:
-    return examination.notes.get(group, ())
-
-
 def _checks(examination: Examination, group: str) -> Table:
     return checks_table(group, [check for check in examination.checks if check.group == group])
 
@@ -57,7 +51,7 @@ def figure2(examination: Examination, add: Add) -> Section:
         for key, name in (("printed", PRINTED), ("small", SMALL))
     ]  # fmt: skip
     return Section(
-        "figure2", "Figure 2: a block is loaded by gravity and turned by 90°", _notes(examination, RUN), images,
+        "figure2", "Figure 2: a block is loaded by gravity and turned by 90°", notes(examination, RUN), images,
         [_checks(examination, RUN), _checks(examination, KINEMATIC)],
     )  # fmt: skip
 
@@ -68,7 +62,7 @@ def inertia(examination: Examination, add: Add) -> Section:
     shear = draw.co_rotated({name: runs[name] for name in (PRINTED, SMALL)})
     away = draw.inertia({name: runs[name] for name in (PRINTED, REST, SMALL)})
     return Section(
-        "inertia", "What the turning box feels: co-rotated stresses and inertia", _notes(examination, "Inertial share"),
+        "inertia", "What the turning box feels: co-rotated stresses and inertia", notes(examination, INERTIA),
         [(add("co_rotated", shear, "Co-rotated shear stress over time, two block sizes."),
           "Shear stress in the frame of the box: the mean over the block, and the largest of any particle."),
          (add("inertia", away, "Co-rotated vertical stress less its static value over time, three runs."),
@@ -85,14 +79,14 @@ def misread(examination: Examination, add: Add) -> Section:
         (name.replace("_", " "), *(sci(float(curve[key][0])) for key in ("kinematic", "run", "stretched")))
         for name, curve in of(curves, "control").items()
     )
-    head = ("reading", "Figure 2, kinematic", "Figure 2, the CPDI run", "stretched turn, 400 steps")
+    head = ("negative control", "Figure 2, kinematic", "Figure 2, the CPDI run", "stretched turn, 400 steps")
     return Section(
-        "misread", "Negative controls: readings that are wrong", _notes(examination, "Negative controls"),
-        [(add("misread", drawn, "Shear stress of the turned block by each wrong reading."),
-          "Shear stress along the motion of Figure 2 by each wrong reading, kinematic, 200 steps; the broad line is "
-          "right, and crosses are the readings that this figure cannot tell from it.")],
+        "misread", "Negative controls", notes(examination, CONTROLS),
+        [(add("misread", drawn, "Shear stress of the turned block by each negative control."),
+          "Shear stress along the motion of Figure 2 by each negative control, kinematic, 200 steps; the broad line is "
+          "right, and crosses are the controls that this figure cannot tell from it.")],
         [Table(MISSES, head, rows),
-         _checks(examination, "Negative controls")],
+         _checks(examination, CONTROLS)],
     )  # fmt: skip
 
 
@@ -103,10 +97,10 @@ def orders(examination: Examination, add: Add) -> Section:
     steps = next(iter(errors.values()))["steps"]
     rows = tuple((name.replace("_", " "), *map(sci, map(float, curve["error"]))) for name, curve in errors.items())
     return Section(
-        "orders", "Orders in time: a turn with strain", _notes(examination, ORDERS),
+        "orders", "Orders in time: a turn with strain", notes(examination, ORDERS),
         [(add("orders", draw.orders(errors, right), "Error against the number of steps."),
           "Full lines: rates. Broken lines: negative controls; those that do not fall never converge.")],
-        [Table("Relative error at the end", ("reading", *(f"{n:g} steps" for n in steps)), rows),
+        [Table("Relative error at the end", ("rate or control", *(f"{n:g} steps" for n in steps)), rows),
          _checks(examination, ORDERS)],
     )  # fmt: skip
 
@@ -119,5 +113,5 @@ def rates(examination: Examination, add: Add) -> Section:
         for key, text in (("s12", "Shear stress: lines are closed forms, marks what was computed."),
                           ("s11", "Normal stress along the shear; σ₂₂ = −σ₁₁, and 0 for Truesdell."))
     ]  # fmt: skip
-    return Section("rates", "Objective is not unique: four rates in simple shear to γ = 8", _notes(examination, SHEAR),
+    return Section("rates", "Objective is not unique: four rates in simple shear to γ = 8", notes(examination, SHEAR),
                    images, [_checks(examination, SHEAR)])  # fmt: skip

@@ -2,7 +2,7 @@
 
 from mpm_verify.cases.judging.records import Ended
 from mpm_verify.cases.judging.stall import PART, Cause, CauseCode, Finding, Peer, Stall
-from mpm_verify.reports.components import words
+from mpm_verify.reports import words
 from mpm_verify.reports.sentences import verdicts
 
 NAMES = {

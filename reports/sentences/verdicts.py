@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from mpm_verify.cases.judging.records import Action, Ended, Expectation, Reason, ReasonCode, Wanted
-from mpm_verify.reports.components import words
+from mpm_verify.reports import words
 from mpm_verify.reports.sentences import failures
 
 

@@ -10,11 +10,11 @@ import pandas as pd
 from mpm_verify.cases.harness.axes import crossed, particle_axes, position_axes, time_axes
 from mpm_verify.cases.harness.study import Head, QuantityPlan
 from mpm_verify.cases.mms.run import NORMS, QUANTITIES
-from mpm_verify.reports.components.cost import compares, costs
 from mpm_verify.reports.figures.local_orders import orders as pairs
 from mpm_verify.reports.frames import Record, joined
 from mpm_verify.reports.sentences import commands, failures
 from mpm_verify.reports.sentences import stalls as told
+from mpm_verify.reports.tables.cost import compares, costs
 
 Rows = list[dict[str, Any]]
 Key = tuple[Head, str, str]

@@ -16,7 +16,7 @@ from mpm_verify.solver._jit import kernel
 from mpm_verify.solver.basis._splines import beyond
 from mpm_verify.solver.state import PAD
 from mpm_verify.solver.tensor import three
-from mpm_verify.solver.weights import FILL, Basis, outside
+from mpm_verify.solver.weights import FILL, Basis, Promise, outside
 
 
 @kernel(inline=True)
@@ -65,3 +65,8 @@ class Bspline2(Basis):
     support: ClassVar[int] = 9
     order: ClassVar[float] = 2.0
     fill = staticmethod(fill)
+
+    @classmethod
+    def promises(cls, crossing: bool) -> Promise:
+        """The order of u falls once particles cross cells."""
+        return Promise(None, True, "Tielen, Wobbes, Moeller & Beuth 2017") if crossing else Promise(cls.order)

@@ -14,7 +14,7 @@ from mpm_verify.solver._jit import kernel
 from mpm_verify.solver.basis._splines import beyond
 from mpm_verify.solver.state import PAD
 from mpm_verify.solver.tensor import four
-from mpm_verify.solver.weights import FILL, Basis, outside
+from mpm_verify.solver.weights import FILL, Basis, Promise, outside
 
 
 @kernel(inline=True)
@@ -79,3 +79,8 @@ class Bspline3(Basis):
     support: ClassVar[int] = 16
     order: ClassVar[float] = 2.0
     fill = staticmethod(fill)
+
+    @classmethod
+    def promises(cls, crossing: bool) -> Promise:
+        """The order of u falls once particles cross cells: as with bspline2, on finer cells; measured, no source."""
+        return Promise(None, stalls=True) if crossing else Promise(cls.order)

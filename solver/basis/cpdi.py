@@ -11,7 +11,7 @@ With cpdi:limit=1 no half diagonal r1 +- r2 is longer than one cell: longer ones
 parted; with it, they part. The volume of the particle stays J V0, and is the area of its domain no longer.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
 from typing import ClassVar
 
@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from mpm_verify.solver._jit import kernel
 from mpm_verify.solver.layout import Layout, parallelograms
 from mpm_verify.solver.state import Floats
-from mpm_verify.solver.weights import FILL, Basis, Place, bilinear, outside
+from mpm_verify.solver.weights import FILL, Basis, Place, Promise, bilinear, outside
 
 
 @kernel(inline=True)
@@ -109,6 +109,7 @@ class Cpdi(Basis):
     order: ClassVar[float] = 2.0
     fill = staticmethod(fill)
     domain_size: ClassVar[int] = 4
+    has_limit: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         if not self.limit > 0:
@@ -116,6 +117,15 @@ class Cpdi(Basis):
         if self.limit < inf:
             object.__setattr__(self, "fill", fill_limited)
             object.__setattr__(self, "domain_size", 5)
+
+    @classmethod
+    def promises(cls, crossing: bool) -> Promise:
+        """The order stays when particles cross cells."""
+        return Promise(cls.order, source="Sadeghirad, Brannon & Burghardt 2011")
+
+    def limited(self, limit: float) -> "Cpdi":
+        """The basis with this limit, unless it has one."""
+        return self if self.limit < inf else replace(self, limit=limit)
 
     def domain(self, layout: Layout, place: Place) -> Floats:
         """Initial half side vectors r0; F moves them. With a limit, that too."""

@@ -14,7 +14,7 @@ from mpm_verify.solver._jit import BLOCK, F1, F2, f8, i8, kernel, nothing
 from mpm_verify.solver.failure import FailureKind
 from mpm_verify.solver.layout import Layout
 from mpm_verify.solver.state import Floats, Grid, Particles
-from mpm_verify.solver.weights import FILL, Basis, Place, Refusal, bilinear, outside
+from mpm_verify.solver.weights import FILL, Basis, Place, Promise, Refusal, bilinear, outside
 
 
 @kernel(FILL)
@@ -84,6 +84,11 @@ class Cpdi2(Basis):
     order: ClassVar[float] = 2.0
     fill = staticmethod(fill)
     domain_size: ClassVar[int] = 8
+
+    @classmethod
+    def promises(cls, crossing: bool) -> Promise:
+        """The order stays when particles cross cells."""
+        return Promise(cls.order, source="Sadeghirad, Brannon & Guilkey 2013")
 
     @staticmethod
     def domain(layout: Layout, place: Place) -> Floats:

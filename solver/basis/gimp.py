@@ -15,7 +15,7 @@ from mpm_verify.solver.failure import FailureKind
 from mpm_verify.solver.layout import Layout, parallelograms
 from mpm_verify.solver.state import Floats
 from mpm_verify.solver.tensor import three
-from mpm_verify.solver.weights import FILL, Basis, Place, Refusal, outside
+from mpm_verify.solver.weights import FILL, Basis, Place, Promise, Refusal, outside
 
 LARGEST = 0.5 + 1e-9  # half length, in cells: beyond, a domain reaches a fourth node
 
@@ -72,6 +72,11 @@ class Gimp(Basis):
     order: ClassVar[float] = 2.0
     fill = staticmethod(fill)
     domain_size: ClassVar[int] = 2
+
+    @classmethod
+    def promises(cls, crossing: bool) -> Promise:
+        """The order of u falls once particles cross cells."""
+        return Promise(None, True, "Wallstedt & Guilkey 2008") if crossing else Promise(cls.order)
 
     @staticmethod
     def domain(layout: Layout, place: Place) -> Floats:

@@ -9,7 +9,7 @@ from typing import ClassVar
 import numpy as np
 
 from mpm_verify.solver._jit import BLOCK, kernel
-from mpm_verify.solver.weights import FILL, Basis, outside
+from mpm_verify.solver.weights import FILL, Basis, Promise, outside
 
 B = BLOCK
 
@@ -54,3 +54,9 @@ class Mpm(Basis):
     support: ClassVar[int] = 4
     order: ClassVar[float] = 2.0
     fill = staticmethod(fill)
+    gradients_jump: ClassVar[bool] = True
+
+    @classmethod
+    def promises(cls, crossing: bool) -> Promise:
+        """The error of u grows once particles cross cells."""
+        return Promise(None, source="Steffen, Kirby & Berzins 2008") if crossing else Promise(cls.order)

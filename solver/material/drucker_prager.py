@@ -95,6 +95,7 @@ class DruckerPrager(RateMaterial, Elastic):
     cone: str = "plane_strain"
     void: float = 0.0
     memory: ClassVar[tuple[str, ...]] = ("gamma_p", "eps_v_p", "void")
+    order: ClassVar[float | None] = 1.0
     respond = staticmethod(respond)
 
     def __post_init__(self) -> None:
@@ -104,6 +105,16 @@ class DruckerPrager(RateMaterial, Elastic):
         check_void(self.void, self.c)
         if self.cone not in CONES:
             raise ValueError(f"cone = {self.cone!r} must be one of {', '.join(CONES)}")
+
+    @property
+    def friction_angle(self) -> float:
+        """Angle phi in degrees."""
+        return self.phi
+
+    @property
+    def cohesion(self) -> float:
+        """Cohesion c."""
+        return self.c
 
     def constants(self) -> Floats:
         """lam, 2 mu, a, b, and factors of the return."""

@@ -113,6 +113,8 @@ class MohrCoulomb(RateMaterial, Elastic):
     sigma_t: float = 0.0
     void: float = 0.0
     memory: ClassVar[tuple[str, ...]] = ("gamma_p", "eps_v_p", "void")
+    order: ClassVar[float | None] = 1.0
+    yields_in_plane: ClassVar[bool] = True
     respond = staticmethod(respond)
 
     def __post_init__(self) -> None:
@@ -122,6 +124,16 @@ class MohrCoulomb(RateMaterial, Elastic):
         check_void(self.void, self.c)
         if not 0 <= self.sigma_t < inf:
             raise ValueError(f"sigma_t = {self.sigma_t} must be zero or more, and finite")
+
+    @property
+    def friction_angle(self) -> float:
+        """Angle phi in degrees."""
+        return self.phi
+
+    @property
+    def cohesion(self) -> float:
+        """Cohesion c."""
+        return self.c
 
     def constants(self) -> Floats:
         """lam, 2 mu, strength, and the weights of trial stresses in the return to each region."""

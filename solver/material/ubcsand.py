@@ -189,11 +189,23 @@ class Ubcsand(RateMaterial):
     reversal: float = 0.0
     void: float = 0.0
     memory: ClassVar[tuple[str, ...]] = MEMORY
+    yields_in_plane: ClassVar[bool] = True
+    order: ClassVar[float | None] = 2.0
     respond = staticmethod(respond)
 
     def __post_init__(self) -> None:
         RateMaterial.__post_init__(self)
         check(self)
+
+    @property
+    def friction_angle(self) -> float:
+        """Angle phi_f in degrees."""
+        return self.phi_f
+
+    @property
+    def cohesion(self) -> float:
+        """Cohesion c."""
+        return self.c
 
     @property
     def eta_f(self) -> float:

@@ -7,18 +7,15 @@ not in any force and stays as it is. F, domains and volumes move with the veloci
 """
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, get_args
+from typing import ClassVar, Literal, get_args
 
 import numpy as np
 
+from mpm_verify.solver.context import Context, fail
 from mpm_verify.solver.failure import FailureKind
-from mpm_verify.solver.model import fail
-from mpm_verify.solver.rate_material import RateMaterial
+from mpm_verify.solver.material_model import Material
 from mpm_verify.solver.smoothing._project import project, strained, strains
 from mpm_verify.solver.state import Floats, Particles
-
-if TYPE_CHECKING:
-    from mpm_verify.solver.model import Model
 
 Of = Literal["rate", "stress", "both"]
 Where = Literal["cell", "node"]
@@ -48,51 +45,56 @@ class Smoothing:
         if not 0 < self.beta <= 1:
             raise ValueError(f"beta = {self.beta} must lie above 0 and up to 1")
 
-    def check(self, law: Any) -> None:
-        """Raises ValueError for a law that cannot be smoothed."""
-        if not isinstance(law, RateMaterial) or law.rate not in RATES:
+    @property
+    def adjoint(self) -> bool:
+        """Whether strain and stress are smoothed by one projector, so that the work of one is that of the other."""
+        return self.of == "both" and self.where == "cell" and self.into == "force"
+
+    def check(self, material: Material) -> None:
+        """Raise ValueError for a material that cannot be smoothed."""
+        if material.rate not in RATES:
             raise ValueError(f"smoothing must have a law in rate form with a rate of {', '.join(RATES)}")
 
-    def stress(self, model: "Model") -> None:
+    def stress(self, context: Context) -> None:
         """Write particles.sigma_smoothed, the stress of the internal force, at the start of a step."""
-        p = model.particles
+        p = context.particles
         if self.of == "rate":
             return
         smoothed = p.sigma.copy()
-        smoothed[:, [0, 1, 3]] = self.smooth(model, p.x, p.sigma[:, [0, 1, 3]])
+        smoothed[:, [0, 1, 3]] = self.smooth(context, p.x, p.sigma[:, [0, 1, 3]])
         if self.into == "history":
             p.sigma[:] = smoothed
         else:
             p.sigma_smoothed = smoothed
 
-    def strain(self, model: "Model", x: Floats) -> Floats | None:
+    def strain(self, context: Context, x: Floats) -> Floats | None:
         """F (P,2,2) of the strain that the law is to see, at the end of a step that began at x (P,2)."""
-        p = model.particles
+        p = context.particles
         if self.of == "stress":
             return None
         motion, F_smoothed = np.empty((len(p), 4)), np.empty_like(p.F)
         strains(p.F_old, p.F, motion)
-        motion[:, :3] = self.smooth(model, x, motion[:, :3])
+        motion[:, :3] = self.smooth(context, x, motion[:, :3])
         strained(p.F_old, motion, F_smoothed)
         return F_smoothed
 
-    def smooth(self, model: "Model", x: Floats, tensor: Floats) -> Floats:
+    def smooth(self, context: Context, x: Floats, tensor: Floats) -> Floats:
         """Plane tensors xx, yy, xy (P,3) with the chosen parts projected."""
         parts = np.stack([tensor[:, 0] + tensor[:, 1], tensor[:, 0] - tensor[:, 1], 2 * tensor[:, 2]], axis=1) / 2
         chosen = np.flatnonzero([self.volumetric, self.deviatoric, self.deviatoric])
-        means = self.project(model, x, np.ascontiguousarray(parts[:, chosen]))
+        means = self.project(context, x, np.ascontiguousarray(parts[:, chosen]))
         parts[:, chosen] += self.beta * (means - parts[:, chosen])
         return np.stack([parts[:, 0] + parts[:, 1], parts[:, 0] - parts[:, 1], parts[:, 2]], axis=1)
 
-    def project(self, model: "Model", x: Floats, values: Floats) -> Floats:
+    def project(self, context: Context, x: Floats, values: Floats) -> Floats:
         """Projected values (P,C), by the volumes of the start of the step. Raises RunFailed outside the grid."""
-        g, out = model.grid, np.empty_like(values)
+        g, out = context.grid, np.empty_like(values)
         place = (x - g.origin) / g.dx
         inside = ((place >= 0) & (place < (g.nx - 1, g.ny - 1))).all(axis=1)  # NaN is not
         if not inside.all():
-            fail(model, int(np.flatnonzero(~inside)[0]), FailureKind.OUTSIDE_GRID)
+            fail(context, int(np.flatnonzero(~inside)[0]), FailureKind.OUTSIDE_GRID)
         nodes = self.where == "node"
-        project(x, volumes(model.particles), values, g.origin, 1.0 / g.dx, g.nx, g.ny, nodes, out)
+        project(x, volumes(context.particles), values, g.origin, 1.0 / g.dx, g.nx, g.ny, nodes, out)
         return out
 
 

@@ -6,15 +6,12 @@ Methods Appl. Mech. Eng. 333 (2018) 466, stress from F-bar; Zhao, Jiang & Choo, 
 """
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mpm_verify.solver.context import Context
 from mpm_verify.solver.smoothing._base import Of, Smoothing, Where
 from mpm_verify.solver.state import Floats
-
-if TYPE_CHECKING:
-    from mpm_verify.solver.model import Model
 
 
 @dataclass(frozen=True)
@@ -29,10 +26,10 @@ class Fbar(Smoothing):
         if self.of != "rate":
             raise ValueError(f"of = {self.of!r} must be rate: F-bar leaves the stress as the law gives it")
 
-    def strain(self, model: "Model", x: Floats) -> Floats:
+    def strain(self, context: Context, x: Floats) -> Floats:
         """F (P,2,2) with the mean volume ratio of the step."""
-        p = model.particles
+        p = context.particles
         ratio = np.linalg.det(p.F) / np.linalg.det(p.F_old.reshape(-1, 2, 2))
-        mean = self.project(model, x, ratio[:, None])[:, 0]
+        mean = self.project(context, x, ratio[:, None])[:, 0]
         F_smoothed: Floats = ((1 + self.beta * (mean / ratio - 1)) ** 0.5)[:, None, None] * p.F
         return F_smoothed

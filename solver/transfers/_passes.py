@@ -4,19 +4,15 @@ Imported only by those who need them: kernels take seconds to compile. Weights a
 particles at the time of the call, which transfer.p2g has found to fit into their slabs.
 """
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numba import prange
 
 from mpm_verify.solver._jit import BLOCK, F1, F2, F3, I1, f8, i8, kernel, nothing
 from mpm_verify.solver.boundary import solve
+from mpm_verify.solver.context import Context
 from mpm_verify.solver.state import Floats
 from mpm_verify.solver.transfer import CHUNK, B, cells_of, deform, invertible
 from mpm_verify.solver.weights import Fill
-
-if TYPE_CHECKING:
-    from mpm_verify.solver.model import Model
 
 
 @kernel(nothing(Fill, i8, i8, i8, i8, F2, F3, F1, F2, F1, F1, f8, i8, i8, F2))
@@ -166,19 +162,19 @@ def advect_all(
         )  # fmt: skip
 
 
-def spread(model: "Model", values: Floats) -> Floats:
+def spread(context: Context, values: Floats) -> Floats:
     """Momentum at the nodes, the first columns of (n,4), of particles with velocities `values` (P,2)."""
-    g, p, basis, out = model.grid, model.particles, model.basis, np.zeros_like(model.grid.momentum_force)
+    g, p, basis, out = context.grid, context.particles, context.basis, np.zeros_like(context.grid.momentum_force)
     spread_all(
-        basis.fill, basis.support, basis.domain_size, model.slabs.start, p.x, p.F, p.m, np.ascontiguousarray(values),
+        basis.fill, basis.support, basis.domain_size, context.slabs.start, p.x, p.F, p.m, np.ascontiguousarray(values),
         p.domain.ravel(), g.origin, 1.0 / g.dx, g.nx, g.ny, out,
     )  # fmt: skip
     return out
 
 
-def collect(model: "Model", velocity_acceleration: Floats) -> Floats:
+def collect(context: Context, velocity_acceleration: Floats) -> Floats:
     """Velocity and acceleration (P,4) of the grid, given at its nodes (n,4), where the particles are."""
-    g, p, basis, values = model.grid, model.particles, model.basis, np.empty((len(model.particles), 4))
+    g, p, basis, values = context.grid, context.particles, context.basis, np.empty((len(context.particles), 4))
     collect_all(
         basis.fill, basis.support, basis.domain_size, p.x, p.F, p.domain.ravel(), g.origin, 1.0 / g.dx, g.nx, g.ny,
         velocity_acceleration,
@@ -187,27 +183,29 @@ def collect(model: "Model", velocity_acceleration: Floats) -> Floats:
     return values
 
 
-def advect(model: "Model", velocity_acceleration: Floats, strain: Floats) -> None:
-    """Places move with the velocities `velocity_acceleration`, F with the gradient of `strain`; both (n,4), one
-    pass."""
-    g, p, basis = model.grid, model.particles, model.basis
+def advect(context: Context, velocity_acceleration: Floats, strain: Floats, half: float) -> None:
+    """Move x with the velocities `velocity_acceleration`, and F with the gradient of `strain`; both (n,4), one pass.
+
+    `half`: see Scheme.half.
+    """
+    g, p, basis = context.grid, context.particles, context.basis
     advect_all(
         basis.fill, basis.support, basis.domain_size, p.x, p.F, p.domain.ravel(), g.origin, 1.0 / g.dx, g.nx, g.ny,
         velocity_acceleration,
-        strain, model.dt, model.scheme.half(model.dt), model.inverted, model.cell_crossings,
+        strain, context.dt, half, context.inverted, context.cell_crossings,
     )  # fmt: skip
 
 
-def lumped(model: "Model", momentum: Floats) -> Floats:
+def lumped(context: Context, momentum: Floats) -> Floats:
     """Momentum over mass, (n,2), zero at nodes of no mass; walls are not looked at."""
-    mass = model.grid.mass[:, None]
-    velocity: Floats = np.divide(momentum[:, :2], mass, out=np.zeros((len(mass), 2)), where=mass > model.cutoff)
+    mass = context.grid.mass[:, None]
+    velocity: Floats = np.divide(momentum[:, :2], mass, out=np.zeros((len(mass), 2)), where=mass > context.cutoff)
     return velocity
 
 
-def walled(model: "Model", momentum: Floats, before: bool = False) -> Floats:
+def walled(context: Context, momentum: Floats, before: bool = False) -> Floats:
     """The same as (n,4), with the walls' velocities at the end of the step, or before it."""
-    g, w, velocity = model.grid, model.walls, np.empty_like(momentum)
-    value = w.value - model.dt * w.rate if before else w.value
-    solve(g.mass, momentum, velocity, w.held, value, w.rate, False, 0.0, model.cutoff, g.ny)
+    g, w, velocity = context.grid, context.walls, np.empty_like(momentum)
+    value = w.value - context.dt * w.rate if before else w.value
+    solve(g.mass, momentum, velocity, w.held, value, w.rate, False, 0.0, context.cutoff, g.ny)
     return velocity

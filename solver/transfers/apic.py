@@ -12,19 +12,16 @@ cpdi2: its centroid does not quite move with sum N v_i. Energy is lost, by far l
 """
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numba import prange
 
 from mpm_verify.solver._jit import BLOCK, F1, F2, F3, I1, f8, i8, kernel, nothing
+from mpm_verify.solver.context import Context
 from mpm_verify.solver.state import Floats
 from mpm_verify.solver.transfer import CHUNK, B
 from mpm_verify.solver.transfers._base import Gradient, Transfer
 from mpm_verify.solver.weights import Fill
-
-if TYPE_CHECKING:
-    from mpm_verify.solver.model import Model
 
 LEAST = 1e-12  # of D / h^2
 
@@ -163,31 +160,31 @@ class Apic(Transfer):
     """No parameters; particles.affine_velocity (P,4) is the state of its own: xx, xy, yx, yy, a velocity times a
     length."""
 
-    def start(self, model: "Model", L: Gradient | None = None) -> None:
+    def start(self, context: Context, L: Gradient | None = None) -> None:
         """B = L D, by which p2g gives each node the velocity of the affine field; without L it is zero."""
-        p, g = model.particles, model.grid
+        p, g = context.particles, context.grid
         p.affine_velocity = np.zeros((len(p), 4))
         if L is not None:
             places = np.concatenate([g.nodes, np.zeros_like(g.nodes)], axis=1)
-            affine_of(model, places)  # of v_i = x_i, B is D
+            affine_of(context, places)  # of v_i = x_i, B is D
             p.affine_velocity = (L(p.X) @ p.affine_velocity.reshape(-1, 2, 2)).reshape(-1, 4)
 
-    def give(self, model: "Model", momentum: Floats) -> None:
+    def give(self, context: Context, momentum: Floats) -> None:
         """The affine part."""
-        g, p, basis = model.grid, model.particles, model.basis
+        g, p, basis = context.grid, context.particles, context.basis
         give_affine(
-            basis.fill, basis.support, basis.domain_size, model.slabs.start, p.x, p.F, p.m, p.affine_velocity,
+            basis.fill, basis.support, basis.domain_size, context.slabs.start, p.x, p.F, p.m, p.affine_velocity,
             p.domain.ravel(), g.origin, 1.0 / g.dx, g.nx, g.ny, momentum,
         )  # fmt: skip
 
-    def take(self, model: "Model") -> None:
+    def take(self, context: Context) -> None:
         """B from the new velocities."""
-        affine_of(model, model.grid.velocity_acceleration)
+        affine_of(context, context.grid.velocity_acceleration)
 
 
-def affine_of(model: "Model", velocity_acceleration: Floats) -> None:
+def affine_of(context: Context, velocity_acceleration: Floats) -> None:
     """Write particles.affine_velocity from velocities, the first columns of `velocity_acceleration` (n,4)."""
-    g, p, basis = model.grid, model.particles, model.basis
+    g, p, basis = context.grid, context.particles, context.basis
     take_affine(
         basis.fill, basis.support, basis.domain_size, p.x, p.F, p.affine_velocity, p.domain.ravel(), g.origin,
         1.0 / g.dx,

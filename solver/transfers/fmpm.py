@@ -17,16 +17,14 @@ is below 0.79 for k = 1, 0.64 for 2, 0.56 for 4, 0.51 for 8; FLIP, dt w < 2 / sq
 """
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import ClassVar
 
 import numpy as np
 
+from mpm_verify.solver.context import Context
 from mpm_verify.solver.state import Floats
 from mpm_verify.solver.transfers._base import Transfer
 from mpm_verify.solver.transfers._passes import collect, lumped, spread
-
-if TYPE_CHECKING:
-    from mpm_verify.solver.model import Model
 
 HIGHEST = 100  # terms; each takes two passes over the particles
 
@@ -36,14 +34,15 @@ class Fmpm(Transfer):
     """`order`: terms k of the series, a whole number from 1. Raises ValueError otherwise."""
 
     order: float = 2
+    filters_walls: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         if not (1 <= self.order <= HIGHEST and float(self.order).is_integer()):
             raise ValueError(f"order = {self.order} of FMPM must be a whole number from 1 to {HIGHEST}")
 
-    def filter(self, model: "Model", velocity_acceleration: Floats) -> None:
+    def filter(self, context: Context, velocity_acceleration: Floats) -> None:
         """Replace v by w; at held nodes v is the wall's velocity."""
         v, w = velocity_acceleration[:, :2].copy(), velocity_acceleration[:, :2]
         for _ in range(int(self.order) - 1):
-            Aw = lumped(model, spread(model, collect(model, velocity_acceleration)[:, :2]))
-            w[:] = np.where(model.walls.held, v, v + w - Aw)
+            Aw = lumped(context, spread(context, collect(context, velocity_acceleration)[:, :2]))
+            w[:] = np.where(context.walls.held, v, v + w - Aw)

@@ -7,6 +7,7 @@ import pytest
 from test_speed import paired, report
 
 from mpm_verify.cases.column.case import gravity, setup
+from mpm_verify.cases.column.measure import Measure
 from mpm_verify.cases.column.run import ColumnRun
 from mpm_verify.solver._jit import use_threads
 from mpm_verify.solver.step import Model, advance
@@ -26,6 +27,7 @@ EXTRAS = {
 
 def moving(run: ColumnRun, steps: int) -> Model:
     model, _ = setup(run)
+    Measure(run, model)  # its energy budget watches the steps, as in every run of the case
     for _ in range(steps):
         advance(model, gravity)
     return model

@@ -40,8 +40,7 @@ def audit(
         law, result = examine(solution, material)
     with printing():
         if json_output:
-            document = {"solution": solution, "material": law, **asdict(result)}
-            typer.echo(json.dumps(document, indent=2, ensure_ascii=False))
+            typer.echo(json.dumps(document(solution, law, result), indent=2, ensure_ascii=False))
         else:
             show(f"{solution} in {law}", result)
 
@@ -61,12 +60,21 @@ def examine(specification: str, material: str | None) -> tuple[str, "Audit"]:
     return name, score(manufacture(solution, law, law.rho0), solution, law)
 
 
+def document(solution: str, material: str, result: "Audit") -> dict[str, object]:
+    """The content of --json: each blind spot with its sentence, and all that was measured."""
+    from mpm_verify.reports.sentences import blind_spots as words
+
+    spots = [{**asdict(spot), "sentence": words.sentence(spot)} for spot in result.spots]
+    return {"solution": solution, "material": material, "spots": spots, "numbers": result.numbers}
+
+
 def show(title: str, result: "Audit") -> None:
     """Print what is blind, what is seen, and the numbers, as wide as the terminal is."""
     from rich.columns import Columns
     from rich.table import Table
     from rich.text import Text
 
+    from mpm_verify.reports.sentences import blind_spots as words
     from mpm_verify.verify.terminal.table import Listened
 
     out = Listened(highlight=False, soft_wrap=False)
@@ -82,7 +90,7 @@ def show(title: str, result: "Audit") -> None:
         table.add_column(no_wrap=True)
         table.add_column()
         for spot in spots:
-            table.add_row(spot.key, Text(spot.sentence))
+            table.add_row(spot.code, Text(words.sentence(spot)))
         out.print(Text())
         out.print(table)
     out.print(Text("\nin numbers", "bold"))

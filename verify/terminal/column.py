@@ -7,31 +7,33 @@ from mpm_verify.reports.frames import Record
 
 def show(record: Record, page: Path | None) -> None:
     """Print the runs, the paper's sentences, and the checks."""
-    collapse = record.analysis.more
     from rich.table import Table
     from rich.text import Text
 
-    from mpm_verify.reports.pages.column import WORDS, numbers
+    from mpm_verify.reports.pages.column import numbers
+    from mpm_verify.reports.sentences import column as words
+    from mpm_verify.reports.sentences.remarks import lead
     from mpm_verify.verify.terminal.checks import show as checks
     from mpm_verify.verify.terminal.table import Listened
 
+    found = record.analysis.more
     out = Listened(highlight=False, soft_wrap=False)
     if not out.is_terminal:
         out.width = max(out.width, 100)
     table = Table(box=None, pad_edge=False, header_style="dim")
     for name in ("run", "front 99 %", "99.9 %", "toe", "height", "rest", "falls", "area", ""):
         table.add_column(name, justify="left" if name in ("run", "") else "right")
-    for run in collapse.study.runs:
-        table.add_row(collapse.label(run), *numbers(run, collapse.results.get(run.digest)))
+    for run in found.study.runs:
+        table.add_row(words.label(found.study, run), *numbers(run, found.results.get(run.digest)))
     out.print()
     out.print(table)
     out.print(
-        "lengths in m from the wall; rest in sqrt(h0/g); falls: of the height in the last fifth of the time; "
+        "lengths in m from the wall; rest in sqrt(h0/g); falls: fraction of the height in the last fifth of the time; "
         "area: of the heap over that of the column"
     )
     styles = {True: "bold green", False: "bold yellow", None: "dim"}
-    for claim in collapse.claims:
-        where = f" ({claim.runs})" if claim.runs else ""
-        out.print(Text.assemble("\n", (WORDS[claim.reproduced].upper(), styles[claim.reproduced]),
-                                f"  {claim.says}{where} {claim.found}"))  # fmt: skip
-    checks(record, page, collapse.examination.lead)
+    for claim in found.claims:
+        where = f" ({words.listed(claim.shared)})" if claim.shared else ""
+        told = f"  {words.says(claim)}{where} {words.found(claim)}"
+        out.print(Text.assemble("\n", (words.answer(claim).upper(), styles[claim.reproduced]), told))
+    checks(record, page, lead(found.examination))

@@ -15,6 +15,7 @@ from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.cases.judging.stall import Stall
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences import commands, stalls, verdicts
+from mpm_verify.solver.plugins import on_screen
 
 STYLES = {"PASS": "bold green", "FAIL": "bold red", "INCONCLUSIVE": "bold yellow", "ERROR": "bold magenta"}
 ALWAYS = ("u", "rms")
@@ -68,7 +69,7 @@ def errors_table(found: Sequence[Finding]) -> Table:
     table.add_column("")
     for finding in found:
         for number, row in enumerate(rows(finding)):
-            solution = finding.plan.run.solution if number == 0 else ""
+            solution = on_screen(finding.plan.run.solution) if number == 0 else ""
             table.add_row(*((solution,) if several else ()), *row)
     return table
 
@@ -111,7 +112,7 @@ def sentence(finding: Finding, several: bool = False) -> Text:
 
 def named(declared: QuantityPlan[Any], several: bool) -> str:
     """What a sentence is about, with its solution if the study has several."""
-    solution = f" on {declared.run.solution}" if several else ""
+    solution = f" on {on_screen(declared.run.solution)}" if several else ""
     return f"{declared.run.method}{solution}, {declared.run.ppc} per cell, {declared.quantity} in {declared.norm}"
 
 

@@ -1,0 +1,69 @@
+"""One element test of a material in a study of its strain step: the errors at each number of steps, and the order."""
+
+from dataclasses import dataclass
+from math import log2
+from typing import Any
+
+import numpy as np
+
+from mpm_verify.cases.element.curves import columns, start
+from mpm_verify.cases.element.element import Element
+from mpm_verify.cases.element.exact import Columns, exact
+from mpm_verify.cases.element.paths import ElementTest, Followed, Stopped, follow
+
+DOUBLED, FINE = (1, 2, 4, 8, 16), 64  # steps of the study, and of what stands for the truth where nothing is known
+ROUND_OFF = 1e-9  # relative errors below it have no order
+
+
+@dataclass(frozen=True)
+class ElementStudy:
+    """One test: its curve, the exact one and its source, the errors at each number of steps, and the last order."""
+
+    test: ElementTest
+    curve: Columns
+    failed: Stopped | None
+    truth: Columns | None
+    source: str
+    steps: tuple[int, ...]
+    errors: tuple[float, ...]
+
+    @property
+    def order(self) -> float:
+        """Between the two finest that are above round-off; NaN where there are none.
+
+        Against the test's own curve the last is left out: a quarter of that curve's steps shares too much of its error.
+        """
+        seen = [error for error in (self.errors if self.truth else self.errors[:-1]) if error > ROUND_OFF]
+        return log2(seen[-2] / seen[-1]) if len(seen) > 1 else float("nan")
+
+
+def study(law: Any, test: ElementTest, stress: float, steps: int) -> ElementStudy:
+    """The test with once, twice, ... sixteen times the steps."""
+    element, begin = Element(law), start(law, test, stress)
+    counts = tuple(n * test.steps(steps) for n in DOUBLED)
+    runs = [follow(element, test, n, begin) for n in counts]
+    known = exact(law, test, stress)
+    truth, source = known or (None, "")
+    if truth is None and not any(run.failed for run in runs):
+        finest = follow(element, test, FINE * counts[0], begin)
+        truth_end = None if finest.failed else columns(test, finest)
+    else:
+        truth_end = truth
+    errors = tuple(distance(test, run, truth_end) for run in runs)
+    return ElementStudy(test, columns(test, runs[-1]), first_failure(runs), truth, source, counts, errors)
+
+
+def first_failure(runs: list[Followed]) -> Stopped | None:
+    """Why the finest run of those that ended early did."""
+    return next((run.failed for run in reversed(runs) if run.failed), None)
+
+
+def distance(test: ElementTest, run: Followed, truth: Columns | None) -> float:
+    """Error at the end of the path: of s and t over the largest stress, of the volume over the largest strain."""
+    if run.failed or truth is None:
+        return float("nan")
+    mine = columns(test, run)
+    size = max(float(np.abs([truth["s"], truth["t"]]).max()), 1e-300)
+    stress = max(abs(mine[name][-1] - truth[name][-1]) for name in ("s", "t")) / size
+    length = max(float(np.abs(run.strain).max()), 1e-300)
+    return float(max(stress, abs(mine["ev"][-1] - truth["ev"][-1]) / length))

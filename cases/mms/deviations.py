@@ -1,0 +1,135 @@
+"""What methods do on the shipped solutions beside what they promise, as data: all measured, see ARCHITECTURE.md.
+
+What is not here is as `Basis.promises` says: u of order 2, or an error that grows.
+"""
+
+from dataclasses import dataclass
+
+from mpm_verify.solver.failure import FailureKind
+
+SMALL_AMPLITUDE = "small amplitude"  # a regime of its own: no particle crosses a cell
+
+
+@dataclass(frozen=True)
+class Deviation:
+    """Orders of `u` (None: as promised), `v`, `F` and `sigma`, or one of the two others.
+
+    `stalls`: cells on which the fallen order of u shows at the latest; `fails`: what ends every run.
+    """
+
+    u: float | None = None
+    v: float | None = None
+    F: float | None = None
+    sigma: float | None = None
+    stalls: int | None = None
+    fails: FailureKind | None = None
+
+    def orders(self, promised: float | None) -> dict[str, float | None]:
+        """Orders of the quantities, None where there is none or none is known."""
+        whole = not (self.fails or self.stalls)
+        u = (promised if self.u is None else self.u) if whole else None
+        return {"u": u, "v": self.v, "F": self.F, "sigma": self.sigma}
+
+
+SHOWN = ("mpm", "gimp", "cpgimp", "cpdi", "cpdi2", "bspline2", "bspline3")  # order of methods in tables
+DEVIATIONS: dict[str, dict[str, Deviation]] = {
+    "axis_aligned": {
+        "gimp": Deviation(stalls=64),
+        "cpgimp": Deviation(v=1.7, F=1.7, sigma=1.7),
+        "cpdi": Deviation(v=1.7, F=1.8, sigma=1.8),
+        "cpdi2": Deviation(v=1.7, F=1.8, sigma=1.8),
+        "bspline2": Deviation(stalls=64),
+        "bspline3": Deviation(stalls=96),
+    },
+    "bar": {
+        "gimp": Deviation(stalls=64),
+        "cpgimp": Deviation(v=1.9, F=1.8, sigma=1.9),
+        "cpdi": Deviation(v=1.8, F=1.8, sigma=1.9),
+        "cpdi2": Deviation(v=1.8, F=1.8, sigma=1.9),
+        "bspline2": Deviation(stalls=64),
+        "bspline3": Deviation(stalls=96),
+    },
+    "clamped_shear": {
+        "gimp": Deviation(stalls=64),
+        "cpgimp": Deviation(v=1.9, F=1.65, sigma=1.6),
+        "cpdi": Deviation(v=1.9, F=1.65, sigma=1.6),
+        "cpdi2": Deviation(v=1.9, F=1.65, sigma=1.6),
+        "bspline2": Deviation(stalls=64),
+        "bspline3": Deviation(stalls=96),
+    },
+    "swirl": {
+        "gimp": Deviation(stalls=64),
+        "cpgimp": Deviation(stalls=96),
+        "cpdi": Deviation(v=1.9, F=1.2, sigma=1.2),
+        "cpdi2": Deviation(v=1.9, F=1.2, sigma=1.2),
+        "bspline2": Deviation(stalls=64),
+        "bspline3": Deviation(stalls=96),
+    },
+    "localised": {
+        "gimp": Deviation(stalls=96),
+        "cpgimp": Deviation(v=1.7, F=1.35, sigma=1.45),
+        "cpdi": Deviation(v=1.8, F=1.35, sigma=1.45),
+        "cpdi2": Deviation(v=1.8, F=1.35, sigma=1.45),
+        "bspline2": Deviation(stalls=64),
+        "bspline3": Deviation(stalls=128),
+    },
+    "expanding_ring": {
+        "mpm": Deviation(fails=FailureKind.INVERTED),
+        "gimp": Deviation(stalls=64),
+        "cpgimp": Deviation(stalls=96),
+        "cpdi": Deviation(v=1.9, F=1.5, sigma=1.65),
+        "cpdi2": Deviation(v=1.9, F=1.5, sigma=1.65),
+        "bspline2": Deviation(stalls=64),
+        "bspline3": Deviation(stalls=96),
+    },
+    "generalised_vortex": {
+        "mpm": Deviation(fails=FailureKind.INVERTED),
+        "gimp": Deviation(stalls=64),
+        "cpgimp": Deviation(fails=FailureKind.DOMAIN_TOO_WIDE),
+        "cpdi": Deviation(v=1.9, F=1.6, sigma=1.9),
+        "cpdi2": Deviation(v=2.0, F=1.6, sigma=1.9),
+        "bspline2": Deviation(stalls=64),
+        "bspline3": Deviation(u=2.0, v=1.9, F=1.9, sigma=2.0),
+    },
+    "affine": {
+        "gimp": Deviation(stalls=64),
+        "cpgimp": Deviation(stalls=96),
+        "cpdi": Deviation(u=1.8, v=0.8, F=0.75, sigma=0.8),
+        "cpdi2": Deviation(u=1.8, v=0.8, F=0.75, sigma=0.8),
+        "bspline2": Deviation(stalls=64),
+        "bspline3": Deviation(u=0.75, v=0.3, F=0.2, sigma=0.2),
+    },
+    SMALL_AMPLITUDE: {
+        "mpm": Deviation(v=2.0, F=1.0, sigma=1.0),
+        "gimp": Deviation(v=2.0, F=1.0, sigma=1.0),
+        "cpgimp": Deviation(v=2.0, F=1.0, sigma=1.0),
+        "cpdi": Deviation(v=2.0, F=1.0, sigma=1.0),
+        "cpdi2": Deviation(v=2.0, F=1.0, sigma=1.0),
+        "bspline2": Deviation(v=2.0, F=2.0, sigma=2.0),
+        "bspline3": Deviation(v=2.0, F=2.0, sigma=2.0),
+    },
+}
+# With 9 particles per cell these still have order 2 on the finest grids that were run (96 cells), or have not settled:
+# their stall lies beyond, and nothing is registered of it.
+LATER_WITH_9 = {("cpgimp", "swirl"), ("gimp", "generalised_vortex")}
+OWN_MATERIAL = ("expanding_ring",)  # with another its edges are not free of traction, and no order is expected
+# Recorded errors of u in rms: (method, solution, ppc) -> (h, error), table in ARCHITECTURE.md
+RECORDED = {
+    ("cpdi", "axis_aligned", 4): (1 / 128, 1.127e-5),
+    ("cpdi", "axis_aligned", 9): (1 / 128, 1.066e-5),
+    ("cpdi2", "axis_aligned", 4): (1 / 64, 4.498e-5),
+    ("cpgimp", "axis_aligned", 4): (1 / 64, 4.742e-5),
+    ("cpdi", "bar", 4): (1 / 64, 8.058e-5),
+    ("cpdi2", "bar", 4): (1 / 64, 8.058e-5),
+    ("cpgimp", "bar", 4): (1 / 64, 7.504e-5),
+    ("cpdi", "clamped_shear", 4): (1 / 64, 8.414e-5),
+    ("cpdi2", "clamped_shear", 4): (1 / 64, 8.344e-5),
+    ("cpgimp", "clamped_shear", 4): (1 / 64, 7.467e-5),
+    ("cpdi", "swirl", 4): (1 / 64, 1.604e-4),
+    ("cpdi2", "swirl", 4): (1 / 64, 1.521e-4),
+    ("cpdi", "expanding_ring", 4): (1 / 64, 8.088e-5),
+    ("cpdi2", "expanding_ring", 4): (1 / 64, 8.610e-5),
+    ("cpdi", "generalised_vortex", 4): (1 / 64, 1.045e-2),
+    ("cpdi2", "generalised_vortex", 4): (1 / 64, 9.109e-3),
+    ("bspline3", "generalised_vortex", 4): (1 / 64, 1.612e-2),
+}

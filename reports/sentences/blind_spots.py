@@ -1,0 +1,188 @@
+"""Sentences about what a study of a manufactured solution can see, and what it cannot."""
+
+from collections.abc import Callable
+
+from mpm_verify.mms.blind_spots import CLEAR, FAINT, ROUND, SEEN_BY, BlindSpot, Numbers, SpotCode
+
+MINUS = "\N{MINUS SIGN}"
+Words = Callable[[Numbers], str]
+
+
+def sentence(spot: BlindSpot) -> str:
+    """The sentence that applies; of what is blind, with the solutions of the library that see it."""
+    if not spot.blind:
+        return SEEN[spot.code](spot.numbers)
+    seen_by = f" Seen by {', '.join(SEEN_BY[spot.code])}." if spot.code in SEEN_BY else ""
+    return unseen(spot) + seen_by
+
+
+def unseen(spot: BlindSpot) -> str:
+    """What a study is blind to, in one sentence."""
+    return BLIND[spot.code](spot.numbers)
+
+
+def percent(part: float) -> str:
+    """0 %, 3.1 %, 160 %."""
+    return f"{figure(100 * part)} %"
+
+
+def figure(value: float) -> str:
+    """Two digits, and no exponent but for small numbers."""
+    if abs(value) < 1e-12:
+        return "0"
+    return f"{float(f'{value:.2g}'):.0f}" if abs(value) >= 10 else f"{value:.2g}"
+
+
+def no_shear(n: Numbers) -> str:
+    """F is diagonal, or all but diagonal."""
+    how = "F is diagonal everywhere" if n["shear"] == 0 else f"F is all but diagonal (within {figure(n['shear'])})"
+    return f"{how}: there is no shear, so a dropped shear stress and a wrong shear sign are invisible."
+
+
+def no_rotation(n: Numbers) -> str:
+    """R is I, or all but I."""
+    still = n["rotation_deg"] < ROUND
+    how = "Nothing turns" if still else f"The material turns by {figure(n['rotation_deg'])}° at most"
+    return (
+        f"{how}, F is its own transpose: domain vectors moved by Fᵀ, FᵀF in place of F Fᵀ, a wrong polar "
+        "decomposition or stress rate are invisible, and so is the error of domains that stretch but do not turn."
+    )
+
+
+def rotation(n: Numbers) -> str:
+    """How far the material turns."""
+    weakly = ", so rotation is tested, though weakly" if n["rotation_deg"] < CLEAR else ", so rotation is tested"
+    return f"The material turns by up to {figure(n['rotation_deg'])}°{weakly}."
+
+
+def no_volume(n: Numbers) -> str:
+    """det F is 1, or all but 1."""
+    change = max(1 - n["J_min"], n["J_max"] - 1)
+    how = "det F is 1 everywhere" if change < ROUND else f"det F differs from 1 by {figure(change)} at most"
+    return (
+        f"{how}, so a wrong volumetric response (lambda drops out), a missing 1/J and V0 in place of V are invisible."
+    )
+
+
+def begins(part: float, what: str) -> str:
+    """`without velocity`, `with 1 % of the largest velocity`."""
+    return f"without {what}" if part < ROUND else f"with {percent(part)} of the largest {what}"
+
+
+def amplitude(n: Numbers) -> str:
+    """Sizes of strain and stress."""
+    return (
+        f"Components of F {MINUS} I reach {figure(n['strain'])}, stresses {percent(n['stress'])} of rho0 c² "
+        "(c the compression wave)"
+    )
+
+
+def no_walls(n: Numbers) -> str:
+    """What the boundary does in place of particles that slide along it."""
+    moves, pulls = n["edge_motion"] > ROUND, n["edge_traction"] > ROUND
+    if n["edge_free"] and pulls:
+        return (
+            f"The edges are free, and yet the fields have a traction of {percent(n['edge_traction'])} of the largest "
+            "stress there: with this material the problem is not the one that is run, and no study of it converges."
+        )
+    if not (moves or pulls):
+        return "The boundary neither moves nor carries stress: no wall takes part."
+    if not moves:
+        return "The boundary does not move: a wall along which particles slide takes no part."
+    if not pulls:
+        return "The boundary moves free of stress: no wall takes part."
+    return "The boundary moves as it is prescribed: walls that hold still or let particles slide take no part."
+
+
+def no_plane(n: Numbers) -> str:
+    """Which component is missing."""
+    still = "one component of u" if n["weaker_component"] <= FAINT else "one component of the gradient"
+    return f"The problem is one-dimensional: {still} is all but zero, so half of the code is not tested."
+
+
+BLIND: dict[SpotCode, Words] = {
+    SpotCode.SHEAR: no_shear,
+    SpotCode.ROTATION: no_rotation,
+    SpotCode.ORDER: lambda n: (
+        "F and the velocity gradient L commute, so F (I + dt L) in place of (I + dt L) F is invisible."
+    ),
+    SpotCode.SPIN: lambda n: "The velocity gradient L is symmetric, so L transposed is invisible.",
+    SpotCode.VOLUME: no_volume,
+    SpotCode.GRADIENT: lambda n: (
+        "F is the same everywhere at a time: the stress has no gradient, so what depends on one is invisible."
+    ),
+    SpotCode.START: lambda n: (
+        f"The motion starts {begins(n['start_acceleration'], 'acceleration')}, so a missing half-step start is "
+        "invisible."
+    ),
+    SpotCode.VELOCITY: lambda n: (
+        f"The body starts {begins(n['start_velocity'], 'velocity')}, so wrong initial velocities are invisible."
+    ),
+    SpotCode.MIRROR: lambda n: (
+        "The motion is its own mirror image in the diagonal X = Y, so x and y exchanged throughout is invisible."
+    ),
+    SpotCode.AMPLITUDE: lambda n: (
+        f"{amplitude(n)}: so small that ln J cannot be told from J {MINUS} 1, V0 from V, nor the position x from the "
+        "reference position X."
+    ),
+    SpotCode.CROSSING: lambda n: (
+        f"At {n['finest']:g} cells the largest displacement is {figure(n['finest'] * n['displacement'])} cells, so of "
+        "4 particles in a cell none crosses into another: what crossing does is invisible."
+    ),
+    SpotCode.WALLS: no_walls,
+    SpotCode.LOAD: lambda n: (
+        f"The body force is at most {percent(n['load'])} of the largest acceleration, so one that is dropped or wrong "
+        "is hard to see."
+    ),
+    SpotCode.STRESS: lambda n: (
+        f"The divergence of the stress is {percent(n['stress_force'])} of what the body force and the inertia are: the "
+        "load alone moves the body, so wrong internal forces hardly show."
+    ),
+    SpotCode.PLANE: no_plane,
+    SpotCode.ORDERS: lambda n: (
+        "Orders alone let defects pass; exact solutions, invariants and recorded magnitudes catch some that no order "
+        "shows."
+    ),
+    SpotCode.CONSTANTS: lambda n: (
+        "A wrong constant leaves the order as it is; only a recorded magnitude sees it."
+    ),
+}  # fmt: skip
+SEEN: dict[SpotCode, Words] = {
+    SpotCode.SHEAR: lambda n: (
+        f"Off-diagonal components of F reach {figure(n['shear'])}, so the shear stress takes part."
+    ),
+    SpotCode.ROTATION: rotation,
+    SpotCode.ORDER: lambda n: (
+        "F and the velocity gradient L do not commute, so a wrong order in the update of F shows."
+    ),
+    SpotCode.SPIN: lambda n: "The velocity gradient L is not symmetric, so L transposed shows.",
+    SpotCode.VOLUME: lambda n: (
+        f"det F runs from {figure(n['J_min'])} to {figure(n['J_max'])}, so the volumetric response takes part."
+    ),
+    SpotCode.GRADIENT: lambda n: (
+        f"The gradient of F reaches {figure(n['gradient'])} over the body's width, so the stress has one too."
+    ),
+    SpotCode.START: lambda n: (
+        f"The motion starts {begins(n['start_acceleration'], 'acceleration')}, so a missing half-step start shows."
+    ),
+    SpotCode.VELOCITY: lambda n: (
+        f"The body starts {begins(n['start_velocity'], 'velocity')}, so wrong initial velocities show."
+    ),
+    SpotCode.MIRROR: lambda n: "The motion is not the same in x and y, so axes that are exchanged show.",
+    SpotCode.AMPLITUDE: lambda n: f"{amplitude(n)}.",
+    SpotCode.CROSSING: lambda n: (
+        f"At N cells the largest displacement is {figure(n['displacement'])} N cells "
+        f"({figure(n['finest'] * n['displacement'])} at {n['finest']:g}), so particles cross cells."
+    ),
+    SpotCode.WALLS: lambda n: (
+        "Particles slide along walls that they press on; walls that hold them and free edges take no part."
+    ),
+    SpotCode.LOAD: lambda n: (
+        f"The body force reaches {figure(n['load'])} times the largest acceleration, so one that is dropped shows."
+    ),
+    SpotCode.STRESS: lambda n: (
+        f"The divergence of the stress is {percent(n['stress_force'])} of the larger of body force and inertia: "
+        "internal forces take part."
+    ),
+    SpotCode.PLANE: lambda n: "Both components move, and both x and y have gradients.",
+}  # fmt: skip

@@ -1,0 +1,83 @@
+"""Sentences about element tests of a material: what came out, and what one should know of each test."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from mpm_verify.cases.element.element import ElementFailure
+from mpm_verify.cases.element.exam import ElementRemark as Code
+from mpm_verify.reports.sentences.remarks import Words
+from mpm_verify.solver.material.ubcsand import Ubcsand
+
+Numbers = Mapping[str, Any]
+
+
+def count(n: Numbers) -> str:
+    """`8 element tests`."""
+    return f"{n['tests']:g} element test{'s' * (n['tests'] != 1)}"
+
+
+def tests(n: Numbers) -> str:
+    """How many tests and checks, and how many missed."""
+    missed = f"{n['missed']:g} did not pass" if n["missed"] else "all pass"
+    return f"{count(n)}, {n['checks']:g} checks: {missed}."
+
+
+def failed(n: Numbers) -> str:
+    """Why and where a test ends early."""
+    why = {
+        ElementFailure.NOT_FINITE: "a stress is not finite",
+        ElementFailure.NO_STRAIN: f"no strain leads to what is asked, {n['left']:.1e} of the stress is left",
+    }[n["cause"]]
+    return f"It failed at step {n['step']:g} of {n['steps']:g}: {why}."
+
+
+def outside(n: Numbers) -> str:
+    """In which part of the steps zz is another principal stress than the middle one."""
+    return (
+        f"zz is outside the range of the principal stresses in the plane in {100 * n['fraction']:.3g} % of the steps: "
+        "there the largest shear is on other planes, which this material does not look at."
+    )
+
+
+REMARKS: dict[str, Words] = {
+    Code.TESTS: tests,
+    Code.UNJUDGED: lambda n: f"{count(n)}. Nothing is known of this path, so nothing is judged.",
+    Code.EXACT: lambda n: f"{n['tests']:g} {'is' if n['tests'] == 1 else 'are'} exact in any number of steps.",
+    Code.ORDERS: lambda n: (
+        f"Errors in the strain step fall with orders from {n['least']:.2f} to {n['most']:.2f}."
+    ),
+    Code.FIRST_ORDER: lambda n: (
+        "First order is expected of this material: it returns along the stress at the end of a step, and costs an "
+        "order where the direction of the stress turns."
+    ),
+    Code.RATE_IDLE: lambda n: (
+        f"rate={n['rate']} changes nothing here: along a path of strains the material works in its own frame, and "
+        "nothing turns; verify objectivity tells the rates apart."
+    ),
+    Code.PATH_READ: lambda n: (
+        f"{n['used']} are read of {n['file']}; the largest strain is {n['largest']:.3g} ({100 * n['largest']:.3g} %)."
+    ),
+    Code.PATH_ZERO: lambda n: f"{n['columns']}: zero in every row, as in plane strain, which is what is computed.",
+    Code.PATH_UNUSED: lambda n: f"Not used of {n['file']}: {n['columns']}.",
+    Code.FAILED: failed,
+    Code.AGAINST: lambda n: f"Errors are against: {n['source']}.",
+    Code.AGAINST_OWN: lambda n: f"Errors are against: its own curve with {n['times']:g} times the steps.",
+    Code.ROUND_OFF: lambda n: (
+        "The error is round-off at any number of steps: each step is exact here, and there is no order."
+    ),
+    Code.NO_ORDER: lambda n: "There is no order to see.",
+    Code.ORDER: lambda n: f"The order is {n['order']:.2f}.",
+    Code.ZZ_WITHIN: lambda n: "zz is within the range of the principal stresses in the plane in all steps.",
+    Code.ZZ_OUTSIDE: outside,
+    Code.UNDEFORMED: lambda n: "a material of F starts undeformed",
+    Code.OR_MORE: lambda n: "or a few more",
+    Code.NO_EFFECT: lambda n: "no effect",
+    Code.NO_EFFECT_PRIMARY: lambda n: "no effect in primary loading",
+    Code.AFTER_REVERSAL: lambda n: "in the stiffness after a reversal",
+    Code.CORRELATION: lambda n: (
+        f"not in the paper's Table 2; the default is the correlation 1.1 N^-0.15 at N = {Ubcsand.N:g}"
+    ),
+    Code.OUR_READING: lambda n: (
+        "1 is our reading of the cyclic model, whose rules are not public; 0 is primary loading alone"
+    ),
+}  # fmt: skip

@@ -1,0 +1,51 @@
+"""Words of an Examination: its lead, the notes of each group and its parameters, by the codes that it holds.
+
+The words of a code `case.what` stand in the table REMARKS of the module of the case, beside this one.
+"""
+
+from collections.abc import Callable, Mapping
+from importlib import import_module
+
+from mpm_verify.cases.harness.checks import Examination, Remark
+
+Numbers = Mapping[str, float | str]
+Words = Callable[[Numbers], str]
+
+
+def table(case: str) -> Mapping[str, Words]:
+    """The words of a case by code."""
+    found: Mapping[str, Words] = import_module(f"mpm_verify.reports.sentences.{case}").REMARKS
+    return found
+
+
+def sentence(remark: Remark) -> str:
+    """A remark in words."""
+    return table(remark.code.partition(".")[0])[remark.code](remark.numbers)
+
+
+def lead(examination: Examination) -> str:
+    """What came out."""
+    return " ".join(sentence(remark) for remark in examination.findings if not remark.group)
+
+
+def notes(examination: Examination, group: str) -> list[str]:
+    """What one should know of a group, a paragraph each."""
+    return [sentence(remark) for remark in examination.findings if remark.group == group]
+
+
+def parameters(examination: Examination) -> dict[str, str]:
+    """Each parameter with its value, and what is to be said of it."""
+    return {name: parameter(examination, name) for name in examination.parameters}
+
+
+def parameter(examination: Examination, name: str) -> str:
+    """`31`, or `0.65 (no effect)`."""
+    value = examination.parameters[name]
+    text = value if isinstance(value, str) else f"{value:.10g}"
+    code = examination.origins.get(name)
+    return text if code is None else f"{text} ({sentence(Remark(code))})"
+
+
+def missed(n: Numbers) -> str:
+    """`2 of 30 checks did not pass; they stand first.`"""
+    return f"{n['missed']:g} of {n['checks']:g} checks did not pass; they stand first."
