@@ -9,6 +9,7 @@ from mpm_verify.mms.cells import check_cells
 from mpm_verify.mms.edges import examine
 from mpm_verify.mms.manufacture import manufacture
 from mpm_verify.mms.measure import Law, Sampler, filled, largest
+from mpm_verify.mms.solutions._own import sides
 from mpm_verify.solver.state import Floats
 
 PLACES, TIMES = 33, 33  # along a side and over the duration, for what has to be finite
@@ -40,8 +41,8 @@ def check(solution: Any, law: Law, cells: tuple[int, ...] = ()) -> None:
     invertible(name, solution, sampler)
     for quantity, values in (("the stress", s.sigma), ("the body force", s.b)):
         finite(name, quantity, values, X, times)
-    wrong = examine(solution, exact, law).wrong(solution.sides)
-    if wrong:
+    kinds = sides(solution)
+    if "moving" not in kinds and (wrong := examine(solution, exact, law).wrong(kinds)):
         raise ValueError(f"{name}: {wrong}")
 
 

@@ -9,8 +9,8 @@ from typing import Any
 from mpm_verify.cases.harness.analysis import Analysis, analyse
 from mpm_verify.cases.harness.axes import level, middle, replicated
 from mpm_verify.cases.harness.refinement import Series, collect
-from mpm_verify.cases.harness.store import Arrays, Store, case_of
-from mpm_verify.cases.harness.study import QuantityPlan, ResultRecord, Study
+from mpm_verify.cases.harness.store import Store, case_of
+from mpm_verify.cases.harness.study import Arrays, QuantityPlan, ResultRecord, Study
 from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.reports import words
 from mpm_verify.solver.failure import FailureKind

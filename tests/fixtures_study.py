@@ -6,10 +6,10 @@ from unittest.mock import patch
 
 import numpy as np
 
+from mpm_verify.cases.harness import identity
 from mpm_verify.cases.harness.store import Arrays, Store
 from mpm_verify.cases.harness.study import QuantityPlan, Study
 from mpm_verify.cases.judging.order import Expectation
-from mpm_verify.cases.mms import run as contract
 from mpm_verify.cases.mms.run import NORMS, QUANTITIES, Result, Run
 from mpm_verify.mms.blind_spots import ALWAYS, BlindSpot, SpotCode
 from mpm_verify.solver.failure import Failure, FailureKind
@@ -47,7 +47,7 @@ def make(folder: Path, methods: tuple[str, ...] = ("cpdi", "mpm"), skip: int = 0
 
     Arrays are stored for grids up to `largest` cells. Digests do not depend on the sources of the solver.
     """
-    with patch.object(contract, "sources_digest", _no_sources):
+    with patch.object(identity, "sources", _no_sources):
         runs = [Run(m, "axis_aligned", "neo_hookean", n, p, 0.4) for m, p in U_RMS if m in methods for n in CELLS]
         runs += [Run(m, "axis_aligned", "neo_hookean", 128, p, 0.2) for m in methods for p in HALF_PPC if m == "cpdi"]
         command = "verify mms " + " ".join(f"--method {m}" for m in methods)
@@ -63,10 +63,10 @@ def make(folder: Path, methods: tuple[str, ...] = ("cpdi", "mpm"), skip: int = 0
 
 def sources() -> AbstractContextManager[object]:
     """A context in which digests are those of `make`: render inside it."""
-    return patch.object(contract, "sources_digest", _no_sources)
+    return patch.object(identity, "sources", _no_sources)
 
 
-def _no_sources() -> str:
+def _no_sources(*_: object) -> str:
     return "synthetic"
 
 

@@ -2,7 +2,7 @@
 
 import re
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
@@ -10,13 +10,14 @@ from typing import Any
 import numpy as np
 import pytest
 
+from mpm_verify.cases.harness.identity import identity
 from mpm_verify.cases.mms.case import execute
 from mpm_verify.cases.mms.run import Run
+from mpm_verify.solver.plugins import canonical
 from mpm_verify.mms.check import FINE, check, determinant, least_det
 from mpm_verify.mms.manufacture import manufacture
 from mpm_verify.mms.measure import Sampler
-from mpm_verify.solver import plugins
-from mpm_verify.solver.plugins import SOLUTIONS, absolute, canonical, create, identity, split
+from mpm_verify.solver.plugins import SOLUTIONS, absolute, create, split
 from mpm_verify.verify.main import main
 
 EXAMPLE = "tests/own_solution.py"
@@ -31,14 +32,6 @@ def domain():
 """
 U = "sp.Matrix([0.05 * s * w, 0.03 * s * w])"
 Write = Callable[..., str]
-
-
-@pytest.fixture(autouse=True)
-def forgotten() -> Iterator[None]:
-    """Files are read once a process: not so between tests."""
-    yield
-    plugins.source.cache_clear()
-    sys.modules["mpm_verify.mms.solutions._own"].load.cache_clear()
 
 
 @pytest.fixture
@@ -167,22 +160,28 @@ def test_split() -> None:
     assert split("axis_aligned:A=1,L=2") == ("axis_aligned", "A=1,L=2")
     assert split("dir:1/own.py:A=0.02") == ("dir:1/own.py", "A=0.02")
     assert split("a.py/own.py") == ("a.py/own.py", "")
+    assert split("own.py:rate=dir/rate.py,A=1") == ("own.py", "rate=dir/rate.py,A=1")
+    assert split("mohr_coulomb:rate=dir/rate.py") == ("mohr_coulomb", "rate=dir/rate.py")
     assert split(r"C:\own.py:A=1") == (r"C:\own.py", "A=1")
 
 
-def test_identity_is_the_content(write: Write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The same file elsewhere is the same solution; another text in the same file is another."""
+def test_identity_is_what_is_returned(write: Write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The same solution in another file or in other words is the same; another displacement or domain is another."""
     path = write()
-    first = identity(path)
+    first = identity(SOLUTIONS, path)
     copy = tmp_path / "copy.py"
     copy.write_text(Path(path).read_text())
-    assert identity(str(copy)) == first != identity(f"{path}:A=1")
-    write(domain=" ")
-    assert identity(path) == first  # what was read is what runs in this process
-    plugins.source.cache_clear()
-    assert identity(path) != first
-    assert identity("axis_aligned:A=0.01") == "axis_aligned:A=0.01"
-    assert identity(str(tmp_path / "gone.py")).startswith("unreadable")
+    assert identity(SOLUTIONS, str(copy)) == first
+    write("sp.Matrix([0.05 * w * s, 0.03 * s * w])")
+    assert identity(SOLUTIONS, path) == first
+    write("sp.Matrix([0.05 * w * s, 0.02 * s * w])")
+    assert identity(SOLUTIONS, path) != first
+    for domain in (", 'speed': 90", ", 'duration': 0.03", ", 'boundary': 'fixed'", ", 'material': 'linear_elastic'"):
+        write(domain=domain)
+        assert identity(SOLUTIONS, path) != first
+    write("sp.Matrix([A * s * w, 0.03 * s * w])", more=", A=0.05")
+    assert identity(SOLUTIONS, path) == first != identity(SOLUTIONS, f"{path}:A=0.04")
+    assert identity(SOLUTIONS, str(tmp_path / "gone.py")).startswith("unreadable")
     monkeypatch.chdir(tmp_path)
     assert absolute("own.py:A=1") == f"{path}:A=1"
     assert absolute("axis_aligned:A=1") == "axis_aligned:A=1"
@@ -265,7 +264,7 @@ def test_no_such_file() -> None:
         create(SOLUTIONS, "tests/nowhere.py")
     with pytest.raises(ValueError, match=r"choose from .*, or give a file"):
         create(SOLUTIONS, "nowhere")
-    with pytest.raises(ValueError, match=r"no material 'own.py'; choose from"):
+    with pytest.raises(ValueError, match=r"^own.py: no such file or directory$"):
         create("mpm_verify.solver.material", "own.py")
 
 
@@ -296,8 +295,6 @@ def test_command(
 ) -> None:
     """`verify audit own.py`: an audit, and exit code 2 with one line for a bad file."""
     for u, code in ((U, 0), ("sp.Matrix([s * w, 0])", 2)):
-        plugins.source.cache_clear()
-        sys.modules["mpm_verify.mms.solutions._own"].load.cache_clear()  # type: ignore[attr-defined]
         monkeypatch.setattr(sys, "argv", ["verify", *words, write(u)])
         with pytest.raises(SystemExit) as ended:
             main()

@@ -13,10 +13,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from mpm_verify.cases.harness import identity
 from mpm_verify.cases.harness.store import Store, StoreError
 from mpm_verify.cases.harness.study import QuantityPlan
 from mpm_verify.cases.judging.order import Expectation
-from mpm_verify.cases.mms import run as contract
 from mpm_verify.cases.mms.run import Run
 from mpm_verify.mms.blind_spots import ALWAYS
 from mpm_verify.reports import words
@@ -221,7 +221,7 @@ def test_two_solutions_are_told_apart(tmp_path: Path) -> None:
 
 def test_results_of_earlier_sources_are_shown_and_named_as_such(tmp_path: Path) -> None:
     fixtures.make(tmp_path, ("cpdi",))
-    with patch.object(contract, "sources_digest", lambda: "later"):
+    with patch.object(identity, "sources", lambda *_: "later"):
         said = text(render(tmp_path).read_text())
     assert "computed by other sources than those now installed" in said
     assert "2 of 2 judged quantities PASS." in said

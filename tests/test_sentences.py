@@ -18,6 +18,7 @@ from xml.etree import ElementTree
 import fixtures_study as fixtures
 import numpy as np
 import pytest
+from mpm_verify.solver.sources import TOP
 
 from mpm_verify.cases.harness.analysis import Analysis
 from mpm_verify.cases.harness.store import Store
@@ -32,7 +33,6 @@ from mpm_verify.reports.export.junit import write_junit
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences import commands, failures, stalls, verdicts
 from mpm_verify.solver.failure import Failure, FailureKind
-from mpm_verify.solver.sources import TOP
 
 SENTENCES = (failures, verdicts, stalls, commands)
 SECOND = Expectation(2.0)
@@ -398,7 +398,7 @@ def is_sentence(node: ast.AST) -> bool:
     )
     sought = any(isinstance(op, ast.In | ast.NotIn) for op in node.ops)
     phrases = any(" " in text.strip() for text in texts)
-    return phrases or bool(words) and sought and any(text.isalnum() or len(text) > 3 for text in texts)
+    return phrases or (bool(words) and sought and any(text.isalnum() or len(text) > 3 for text in texts))
 
 
 @pytest.mark.parametrize("floor", ["solver", "mms", "cases"])

@@ -6,8 +6,8 @@ from functools import cache
 
 import fixtures_study as fixtures
 import pytest
-from mpm_verify.cases.mms.sweep import Sweep, build
 
+from mpm_verify.cases.harness.build import Asked, build
 from mpm_verify.cases.harness.study import QuantityPlan, Study
 from mpm_verify.cases.harness.verdicts import Finding as Found
 from mpm_verify.cases.harness.verdicts import doublings, findings
@@ -221,8 +221,10 @@ def sources() -> Iterator[None]:
 
 def recorded(method: str, ppc: int) -> Found:
     runs = tuple(Run(method, "axis_aligned", "neo_hookean", cells, ppc, 0.4) for cells in (8, 16, 32, 64, 128))
-    declared = QuantityPlan(method, "axis_aligned", ppc, "u", "rms", True, Expectation(None))
-    (found,) = findings(Study("mms", "t", "c", runs, (declared,)), {r.digest: fixtures._result(r) for r in runs})
+    declared = QuantityPlan(runs[0], "u", "rms", True, Expectation(None))
+    (found,) = findings(
+        Study("mms", "t", "c", runs, (declared,), case="mms"), {r.digest: fixtures._result(r) for r in runs}
+    )
     return found
 
 
@@ -243,10 +245,10 @@ def test_recorded_studies(sources: None) -> None:
 def test_only_the_displacement_has_a_stall(sources: None) -> None:
     run = Run("mpm", "axis_aligned", "neo_hookean", 8, 4, 0.4)
     runs = tuple(replace(run, cells=cells) for cells in (8, 16, 32))
-    declared = [
-        QuantityPlan("mpm", "axis_aligned", 4, q, n, False, None) for q, n in (("u", "rms"), ("u", "max"), ("v", "rms"))
-    ]
-    found = findings(Study("mms", "t", "c", runs, tuple(declared)), {r.digest: fixtures._result(r) for r in runs})
+    declared = [QuantityPlan(run, q, n, False, None) for q, n in (("u", "rms"), ("u", "max"), ("v", "rms"))]
+    found = findings(
+        Study("mms", "t", "c", runs, tuple(declared), case="mms"), {r.digest: fixtures._result(r) for r in runs}
+    )
     assert [f.stall is not None for f in found] == [True, False, False]
 
 
@@ -258,8 +260,8 @@ def test_a_replicate_that_failed_is_no_lost_cell_size(sources: None) -> None:
     results = {r.digest: fixtures._result(r) for r in (*runs, *shifted)}
     lost = results[shifted[2].digest]
     results[shifted[2].digest] = replace(lost, status="failed", errors={}, failure=Failure(FailureKind.INVERTED, 3))
-    declared = QuantityPlan("cpdi", "axis_aligned", 4, "u", "rms", False, None)
-    (found,) = findings(Study("mms", "t", "c", (*runs, *shifted), (declared,)), results)
+    declared = QuantityPlan(runs[0], "u", "rms", False, None)
+    (found,) = findings(Study("mms", "t", "c", (*runs, *shifted), (declared,), case="mms"), results)
     assert found.levels[2].ended == Ended(1 / 32, Failure(FailureKind.INVERTED, 3), 1)
     assert verdicts.ended(found.levels[2].ended) == "det F ≤ 0 at step 3, replicate 2"
     assert found.crossings == pytest.approx((2.0, 4.0, 8.0))
@@ -276,8 +278,8 @@ def test_orders_over_less_than_half_the_cells_do_not_make_a_stall(sources: None)
             result = fixtures._result(replace(run, cells=8))
             errors = {q: dict.fromkeys(norms, factor[run.cells] / run.cells**2) for q, norms in result.errors.items()}
             results[run.digest] = replace(result, run=run, digest=run.digest, errors=errors)
-        declared = QuantityPlan("cpdi", "axis_aligned", 4, "u", "rms", False, None)
-        return findings(Study("t", "t", "c", runs, (declared,)), results)[0]
+        declared = QuantityPlan(runs[0], "u", "rms", False, None)
+        return findings(Study("t", "t", "c", runs, (declared,), case="mms"), results)[0]
 
     for last in (1.0, 1.04):  # 64 to 96 cells: 2.1, and 1.86 after 2.14
         found = study({**scatter, 96: last})
@@ -296,7 +298,9 @@ def test_orders_over_less_than_half_the_cells_do_not_make_a_stall(sources: None)
 def real(solution: str = "axis_aligned") -> dict[tuple[str, int], Found]:
     use_threads(1)
     methods = ("mpm", "gimp", "cpgimp", "cpdi", "bspline2")
-    study = build(Sweep(methods, solution, cells=(8, 16, 32), ppc=(4, 9)), "verify", "t")
+    study = build(
+        Asked("mms", {"method": methods, "solution": (solution,), "cells": (8, 16, 32), "ppc": (4, 9)}), "verify", "t"
+    )
     results: dict[str, Result] = {run.digest: mms.execute(run)[0] for run in study.runs}
     found = [f for f in findings(study, results) if (f.plan.quantity, f.plan.norm) == ("u", "rms")]
     return {(f.plan.run.method, f.plan.run.ppc): f for f in found}

@@ -5,24 +5,25 @@ from dataclasses import replace
 
 import fixtures_study as fixtures
 import pytest
-from mpm_verify.cases.mms.sweep import SOLUTIONS, Sweep, build, canonical
 
+from mpm_verify.cases.harness.analysis import Analysis
+from mpm_verify.cases.harness.build import Asked, build
 from mpm_verify.cases.harness.study import QuantityPlan, Study
-from mpm_verify.cases.harness.verdicts import Finding, exit_code, findings, refinement
+from mpm_verify.cases.harness.verdicts import Finding, findings, refinement
 from mpm_verify.cases.judging.order import Expectation, Outcome, Verdict
 from mpm_verify.cases.judging.records import Action, Ended, Reason, ReasonCode, Wanted
 from mpm_verify.cases.mms.expectations import later_with_9, registered, registry
 from mpm_verify.cases.mms.run import QUANTITIES, Result, Run
 from mpm_verify.reports.sentences import verdicts
 from mpm_verify.solver.failure import Failure, FailureKind
-from mpm_verify.solver.plugins import TRANSFERS, available
+from mpm_verify.solver.plugins import SOLUTIONS, TRANSFERS, available, canonical
 
 PASS, FAIL, INCONCLUSIVE, ERROR = Outcome
-JUDGED = QuantityPlan("cpdi", "axis_aligned", 4, "u", "rms", True, Expectation(2.0))
-SHOWN = replace(JUDGED, judged=False, expectation=None)
-LEVELS = tuple(Run("cpdi", "axis_aligned", "neo_hookean", cells, 4, 0.4) for cells in (8, 16, 32, 64, 128))
-HALVED = replace(LEVELS[-1], courant=0.2)
 CELLS = (8, 16, 32, 64, 128)
+LEVELS = tuple(Run("cpdi", "axis_aligned", "neo_hookean", cells, 4, 0.4) for cells in CELLS)
+HALVED = replace(LEVELS[-1], courant=0.2)
+JUDGED = QuantityPlan(LEVELS[0], "u", "rms", True, Expectation(2.0))
+SHOWN = replace(JUDGED, judged=False, expectation=None)
 
 
 @pytest.fixture(autouse=True)
@@ -35,12 +36,16 @@ def finding(outcome: Outcome, declared: QuantityPlan = JUDGED) -> Finding:
     return Finding(declared, Verdict(outcome, 2.0, None, None, Reason(ReasonCode.AS_EXPECTED)), (), None)
 
 
+def exit_code(found: list[Finding]) -> int:
+    return Analysis(tuple(found)).exit_code
+
+
 def made(runs: tuple[Run, ...]) -> dict[str, Result]:
     return {run.digest: fixtures._result(run) for run in runs}
 
 
 def study(runs: tuple[Run, ...], *declared: QuantityPlan) -> Study:
-    return Study("mms", "title", "verify mms", runs, declared)
+    return Study("mms", "title", "verify mms", runs, declared, case="mms")
 
 
 def lost(result: Result) -> Result:
@@ -55,12 +60,12 @@ def lost(result: Result) -> Result:
     [
         ([PASS], 0),
         ([FAIL], 1),
-        ([ERROR], 2),
+        ([ERROR], 4),
         ([INCONCLUSIVE], 3),
         ([PASS, PASS], 0),
         ([PASS, INCONCLUSIVE], 3),
-        ([PASS, ERROR], 2),
-        ([INCONCLUSIVE, ERROR], 2),
+        ([PASS, ERROR], 4),
+        ([INCONCLUSIVE, ERROR], 4),
         ([ERROR, FAIL], 1),
         ([PASS, INCONCLUSIVE, ERROR, FAIL], 1),
         ([], 3),
@@ -151,7 +156,7 @@ def test_all_levels_failed_is_an_error() -> None:
     results = {digest: lost(result) for digest, result in made(LEVELS).items()}
     (found,) = findings(study(LEVELS, JUDGED), results)
     assert found.verdict.outcome is ERROR
-    assert exit_code([found]) == 2
+    assert exit_code([found]) == 4
 
 
 def test_incomplete_store() -> None:
@@ -172,8 +177,8 @@ def test_empty_store_is_no_crash(declared: QuantityPlan) -> None:
 
 
 def test_expected_non_convergence_is_met_by_failed_runs() -> None:
-    declared = replace(JUDGED, method="mpm", expectation=Expectation(None, source="literature"))
     runs = tuple(replace(run, method="mpm") for run in LEVELS)
+    declared = replace(JUDGED, run=runs[0], expectation=Expectation(None, source="literature"))
     (found,) = findings(study(runs, declared), made(runs))
     assert found.verdict.outcome is PASS
     assert found.verdict.reason.code is ReasonCode.DIVERGES
@@ -189,12 +194,11 @@ def test_findings_keep_the_order_of_the_declarations() -> None:
 # ---- what the MMS study declares
 
 
-def sweep(**changes: object) -> Sweep:
-    return replace(Sweep(cells=(8, 16, 32, 64)), **changes)
-
-
-def built(**changes: object) -> Study:
-    return build(sweep(**changes), "verify mms", "mms")
+def built(command: str = "verify mms", name: str = "mms", **changes: object) -> Study:
+    """Of cpdi on 8 to 64 cells unless another is asked for; a value or a tuple of them by the name of an axis."""
+    values = {"cells": (8, 16, 32, 64), **changes}
+    listed = {key: value if isinstance(value, tuple) else (value,) for key, value in values.items()}
+    return build(Asked("mms", listed), command, name)
 
 
 REGISTERED = sorted({(entry.method, entry.solution) for entry in registry() if entry.solution in available(SOLUTIONS)})
@@ -202,7 +206,7 @@ REGISTERED = sorted({(entry.method, entry.solution) for entry in registry() if e
 
 @pytest.mark.parametrize(("method", "solution"), REGISTERED)
 def test_judged_is_u_in_rms_with_4_and_9_per_cell(method: str, solution: str) -> None:
-    declared = built(methods=(method,), solution=solution).plan
+    declared = built(method=(method,), solution=solution).plans
     judged = {(d.quantity, d.norm, d.run.ppc) for d in declared if d.judged}
     counts = (4,) if later_with_9(method, solution, registered(solution, method, "u")) else (4, 9)
     assert judged == {("u", "rms", ppc) for ppc in counts}
@@ -214,9 +218,9 @@ def test_judged_is_u_in_rms_with_4_and_9_per_cell(method: str, solution: str) ->
 
 @pytest.mark.parametrize("changes", [{"solution": "axis_aligned:A=0.01"}, {"material": "neo_hookean:nu=0.2"}])
 def test_an_order_is_expected_whatever_the_parameters(changes: dict[str, str]) -> None:
-    judged = [d.expectation for d in built(**changes).plan if d.judged]
+    judged = [d.expectation for d in built(**changes).plans if d.judged]
     assert [(e.order, e.constant) for e in judged if e] == [(2.0, None)] * 2  # the recorded error holds for defaults
-    assert not any(d.judged for d in built(methods=("mpm",), **changes).plan)  # small amplitudes do converge
+    assert not any(d.judged for d in built(method=("mpm",), **changes).plans)  # small amplitudes do converge
 
 
 def test_nothing_is_expected_of_linear_elasticity() -> None:
@@ -236,20 +240,20 @@ def test_nothing_is_expected_of_another_transfer_or_stress_order(changes: dict[s
 
 def test_a_transfer_has_one_name() -> None:
     assert built(transfer="flip:share=1").runs == built().runs
-    assert any(d.judged for d in built(transfer="flip:share=1.0").plan)
+    assert any(d.judged for d in built(transfer="flip:share=1.0").plans)
     assert canonical(TRANSFERS, "fmpm:order=3.0") == "fmpm:order=3"
     assert canonical(TRANSFERS, "fmpm:order=2") == "fmpm"
 
 
 def test_halved_runs_only_where_an_order_is_expected() -> None:
-    study = built(methods=("cpdi", "mpm"))
+    study = built(method=("cpdi", "mpm"))
     halved = [(r.method, r.cells, r.ppc) for r in study.runs if r.courant == 0.2]
     assert halved == [("cpdi", 64, 4), ("cpdi", 64, 9)]
     assert {r.courant for r in study.runs} == {0.4, 0.2}
 
 
 def test_runs_are_the_whole_sweep_once() -> None:
-    study = built(cells=(16, 8, 16), ppc=(9, 1, 9), methods=("mpm",))
+    study = built(cells=(16, 8, 16), ppc=(9, 1, 9), method=("mpm",))
     assert [(r.cells, r.ppc) for r in study.runs] == [(8, 1), (16, 1), (8, 9), (16, 9)]
     assert len({r.digest for r in study.runs}) == len(study.runs)
 
@@ -275,13 +279,13 @@ def test_canonical_keeps_every_digit() -> None:
 
 
 def test_defaults_in_other_words_are_judged() -> None:
-    assert any(d.judged for d in built(solution="axis_aligned:phase=0").plan)
+    assert any(d.judged for d in built(solution="axis_aligned:phase=0").plans)
 
 
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
-        ({"methods": ("cpdi", "nope")}, "choose from"),
+        ({"method": ("cpdi", "nope")}, "choose from"),
         ({"cells": (8, 1)}, "whole numbers from 2 to 4096"),
         ({"ppc": (2,)}, "choose from 1, 4, 9, 16"),
         ({"courant": 0.0}, "0.001 to 10"),
@@ -299,6 +303,6 @@ def test_bad_sweep(changes: dict[str, object], said: str) -> None:
 
 @pytest.mark.parametrize("solution", ["axis_aligned", "clamped_shear"])
 def test_title_and_command_tell_what_was_asked(solution: str) -> None:
-    study = build(sweep(solution=solution, methods=("mpm", "cpdi")), "verify mms --quick", "name")
+    study = built("verify mms --quick", "name", solution=solution, method=("mpm", "cpdi"))
     assert study.title == f"MPM and CPDI against the manufactured solution {solution}"
     assert (study.command, study.name) == ("verify mms --quick", "name")

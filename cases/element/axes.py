@@ -1,7 +1,9 @@
 """The axes of element tests. Names of tests are those of paths.py, which is heavier to import."""
 
 from dataclasses import dataclass
+from hashlib import sha256
 from math import inf
+from pathlib import Path
 from typing import ClassVar
 
 from mpm_verify.cases.harness.study import RunRecord, axis
@@ -45,5 +47,18 @@ class ElementRun(RunRecord):
         """Steps of all runs of the test, in updates of a small grid run."""
         return 100.0 * self.steps
 
+    @property
+    def digest(self) -> str:
+        """Name of the Result, 16 hex digits; of a path from a file also its content."""
+        return self.named(file_digest(self.path) if self.path else "")
+
     def __str__(self) -> str:
         return f"{self.material}, {self.test}"
+
+
+def file_digest(path: str) -> str:
+    """SHA-256 of a file's content; of one that cannot be read any more, what no other has."""
+    try:
+        return sha256(Path(path).read_bytes()).hexdigest()
+    except OSError:
+        return f"unreadable {path}"

@@ -5,26 +5,21 @@ beside curves (tables, limits, invariants) is a test of its own, `properties`.
 The contract of a case is told in cases/harness/case.py.
 """
 
-import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from mpm_verify.cases.element.checks import law_checks
 from mpm_verify.cases.element.exam import examination
-from mpm_verify.cases.element.path_file import from_file
-from mpm_verify.cases.element.paths import TESTS, ElementTest
-from mpm_verify.cases.element.run import AXES, CONFINED, PATH, PROPERTIES, ElementResult, ElementRun
-from mpm_verify.cases.element.study import ElementStudy, study
+from mpm_verify.cases.element.execute import execute, test_of
+from mpm_verify.cases.element.run import AXES, CONFINED, PROPERTIES, ElementResult, ElementRun
+from mpm_verify.cases.element.study import ElementStudy
 from mpm_verify.cases.harness.checks import Check, Examination
-from mpm_verify.cases.harness.environment import environment
-from mpm_verify.cases.harness.store import Arrays, Store, StoreError
-from mpm_verify.cases.harness.study import Study, parameters
-from mpm_verify.solver._jit import use_threads
-from mpm_verify.solver.plugins import MATERIALS, create, on_screen
+from mpm_verify.cases.harness.store import Store, StoreError
+from mpm_verify.cases.harness.study import Study
+from mpm_verify.solver.plugins import MATERIALS, create, label
 from mpm_verify.solver.plugins import canonical as canonical_name
 
 __all__ = ["AXES", "Result", "Run", "canonical", "check", "examine", "execute", "title"]
@@ -46,7 +41,7 @@ class ElementAnalysis:
 
 def title(runs: Sequence[ElementRun]) -> str:
     """`Element tests of mohr_coulomb`."""
-    return f"Element tests of {', '.join(dict.fromkeys(on_screen(run.material) for run in runs))}"
+    return f"Element tests of {', '.join(dict.fromkeys(label(run.material) for run in runs))}"
 
 
 def canonical(values: dict[str, Any]) -> dict[str, Any]:
@@ -66,34 +61,6 @@ def check(runs: Sequence[ElementRun]) -> None:
             raise ValueError("stress: a material with a stress from F starts undeformed; give it to one in rate form")
 
 
-def test_of(run: ElementRun) -> ElementTest:
-    """The test of a run. Raises ValueError for a file that holds no path."""
-    return from_file(Path(run.path), run.units) if run.test == PATH else TESTS[run.test]
-
-
-def execute(run: ElementRun, tick: Callable[[float], None] = lambda fraction: None) -> tuple[ElementResult, Arrays]:
-    """Run one test; one that cannot go on says where, and why."""
-    use_threads(1)  # four rows at a time
-    started, used = time.perf_counter(), time.process_time()
-    law = create(MATERIALS, run.material)
-    arrays: Arrays = {}
-    found: dict[str, Any] = {}
-    if run.test == PROPERTIES:
-        found = {"checks": tuple(law_checks(law))}
-    else:
-        test = test_of(run)
-        one = study(law, test, run.stress, run.steps)
-        found = {"source": one.source, "stopped": one.failed, "counts": one.steps, "step_errors": one.errors,
-                 "read": test.source}  # fmt: skip
-        arrays = {f"curve/{name}": values for name, values in one.curve.items()}
-        arrays |= {f"exact/{name}": values for name, values in (one.truth or {}).items()}
-    result = ElementResult(
-        run=run, digest=run.digest, status="finished", environment=environment(),
-        parameters=parameters("material", law), wall_s=time.perf_counter() - started, cpu_s=time.process_time() - used, **found,
-    )  # fmt: skip
-    return result, arrays
-
-
 def examine(study: Study[ElementRun], results: Mapping[str, ElementResult], store: Store) -> ElementAnalysis:
     """Judge what is stored, one material, stress and number of steps after the other."""
     groups: dict[tuple[str, float, int], list[ElementResult]] = {}
@@ -103,7 +70,7 @@ def examine(study: Study[ElementRun], results: Mapping[str, ElementResult], stor
     several = len(groups) > 1
     found = {}
     for (material, stress, steps), mine in groups.items():
-        name = f"{on_screen(material)}, {stress:g} Pa, {steps} steps" if several else on_screen(material)
+        name = f"{label(material)}, {stress:g} Pa, {steps} steps" if several else label(material)
         found[name] = _one(study, mine, store, several * f"{name}: ")
     return ElementAnalysis(found)
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from mpm_verify.cases.mms.run import Run
-from mpm_verify.solver.plugins import is_file, on_screen, parameters_of, split
+from mpm_verify.solver.plugins import is_file, label, parameters_of, split
 
 CELLS, TIMES = 32, 9  # where and when the velocity at the start is looked at
 SLACK = 1e-3  # of that velocity: particles lie elsewhere
@@ -28,7 +28,7 @@ def check_time_steps(
     longest = max(count for count, _ in steps.values())
     if longest > MOST_STEPS:
         raise ValueError(
-            f"{on_screen(specification)}: a run would take {longest:.2g} time steps to fill the duration of "
+            f"{label(specification)}: a run would take {longest:.2g} time steps to fill the duration of "
             f"{solution.duration:g}; take a shorter duration or a lower reference speed"
         )
     behind = 0.5 * max(dt for _, dt in steps.values())
@@ -67,7 +67,7 @@ def refusal(specification: str, solution: Any, c: float, v: float, courants: Seq
     elif is_file(specification):
         ways.append(f'"speed": {faster:g} in domain()')
     return (
-        f"{on_screen(specification)}: with waves at {c:.4g}, the body at {v:.3g} and a reference speed of {C:g}, a "
+        f"{label(specification)}: with waves at {c:.4g}, the body at {v:.3g} and a reference speed of {C:g}, a "
         f"Courant number of {courant:g} is above the stability limit of {largest:g}; the speed would have to be "
         f"{faster:g} or more; take {', or '.join(ways)}; --force runs it all the same"
     )

@@ -7,21 +7,24 @@
 `domain` may also name a "material" (neo_hookean if not), a "boundary": fixed, roller, free, or four of them for left,
 right, bottom, top (without it the boundary is found, see mms/edges.py), and the "order" that is expected of u.
 Arguments with a number as default, in either function, are parameters, whatever their names: path/to/own.py:A=0.02.
-The file is executed as a program is: run none that you do not trust.
+A file without these functions may hold a class instead, as those of the library. The file is executed as a program is:
+run none that you do not trust.
 """
 
 import inspect
-import traceback
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import field, make_dataclass
 from functools import cache, cached_property
 from pathlib import Path
+from types import ModuleType
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from mpm_verify.solver.layout import CENTRED, Layout, Offset, rectangle
-from mpm_verify.solver.plugins import parameters_of, source
+from mpm_verify.solver.own_file import derived as file_derived
+from mpm_verify.solver.own_file import guarded, module_of, shortened
+from mpm_verify.solver.plugins import SOLUTIONS, own_class, parameters_of
 from mpm_verify.solver.state import Floats
 
 if TYPE_CHECKING:
@@ -48,7 +51,7 @@ class Own:
         self.named()
 
     def displacement(self, X: Sequence["sp.Symbol"], t: "sp.Symbol") -> "sp.Matrix":
-        """u of the reference place X and the time t; two expressions in X, Y and t."""
+        """u of the reference position X and the time t; two expressions in X, Y and t."""
         import sympy as sp
 
         value = self.call("displacement", tuple(X), t)
@@ -164,20 +167,30 @@ class Own:
         return rectangle(self.lower, self.upper, dx, ppc, offset)
 
     def call(self, name: str, *arguments: Any) -> Any:
-        """A function of the file, with those parameters that it has."""
-        function = self.functions[name]
-        typed = parameters_of(type(self))
-        mine = {key: getattr(self, typed[key].name) for key in parameters(self.path, name, function)}
-        return guarded(self.path, lambda: function(*arguments, **mine))
+        """What a function of the file returns with those parameters that it has; asked for once a process."""
+        return called(self, name, arguments)
 
 
 @cache
-def load(path: Path) -> type[Own]:
-    """The class that a file makes; executed once a process. Raises ValueError with one line and the file's line."""
-    text = source(path)
-    namespace: dict[str, Any] = {"__name__": path.stem, "__file__": str(path)}
-    guarded(path, lambda: exec(compile(text, str(path), "exec"), namespace))
-    functions = {name: namespace.get(name) for name in ARGUMENTS}
+def called(solution: Own, name: str, arguments: tuple[Any, ...]) -> Any:
+    """What a function of the file returns."""
+    function = solution.functions[name]
+    typed = parameters_of(type(solution))
+    mine = {key: getattr(solution, typed[key].name) for key in parameters(solution.path, name, function)}
+    return guarded(solution.path, lambda: function(*arguments, **mine))
+
+
+def load(path: Path) -> type:
+    """The class that a file makes. Raises ValueError with one line and the file's line."""
+    return made(path, module_of(path))
+
+
+@cache
+def made(path: Path, module: ModuleType) -> type:
+    """The class of a module: of its two functions, or that which it holds. Raises ValueError."""
+    functions = {name: vars(module).get(name) for name in ARGUMENTS}
+    if not any(functions.values()) and any(isinstance(c, type) for c in vars(module).values()):
+        return completed(path, own_class(SOLUTIONS, path))
     for name, function in functions.items():
         if not inspect.isfunction(function):
             raise ValueError(f"{path} has no function {name}({', '.join(ARGUMENTS[name])})")
@@ -188,6 +201,39 @@ def load(path: Path) -> type[Own]:
                 raise ValueError(f"{path}: {key} is {found[key]:g} in displacement and {value:g} in {name}")
     items = [(spared(key), float, field(default=v, metadata={"typed": key})) for key, v in sorted(found.items())]
     return make_dataclass("Own", items, bases=(Own,), frozen=True, namespace={"path": path, "functions": functions})
+
+
+def completed(path: Path, plugin: Any) -> type:
+    """A class of a user's file, with what checks ask for besides; its displacement is asked for once a process."""
+    plugin.path = path
+    plugin.order = getattr(plugin, "order", None)
+    if plugin.__hash__:
+        plugin.displacement = cache(plugin.displacement)
+    chosen: type = plugin
+    return chosen
+
+
+def sides(solution: Any) -> tuple[str, ...]:
+    """Kinds of left, right, bottom, top of a solution of either form."""
+    if isinstance(solution, Own):
+        return solution.sides
+    boundary = solution.boundary
+    return (boundary,) * 4 if isinstance(boundary, str) else tuple(boundary)
+
+
+def derived(solution: Any) -> str:
+    """What a user's solution returns, as text: u in X, Y and t, and all numbers and words that a run takes from it.
+
+    Of a class, which may compute what it likes, its file counts too.
+    """
+    import sympy as sp
+
+    u = solution.displacement(sp.symbols("X Y", real=True), sp.Symbol("t", real=True))
+    names = ("lower", "upper", "duration", "C", "material")
+    values = [np.asarray(getattr(solution, name)).tolist() for name in names]
+    if isinstance(solution, Own):
+        return repr((sp.srepr(sp.Matrix(u)), values, solution.named()))
+    return repr((sp.srepr(sp.Matrix(u)), values, solution.boundary, file_derived(solution.path)))
 
 
 def parameters(path: Path, name: str, function: Any) -> dict[str, float]:
@@ -209,21 +255,3 @@ def spared(parameter: str) -> str:
     """Name of the field of a parameter: its own, unless a solution has an attribute of that name, such as C."""
     taken = hasattr(Own, parameter) or parameter in Own.__annotations__
     return f"parameter_{parameter}" if taken else parameter
-
-
-def guarded(path: Path, action: Callable[[], Any]) -> Any:
-    """Whatever the user's code raises becomes one line with the line of the file."""
-    try:
-        return action()
-    except SyntaxError as error:
-        raise ValueError(f"{path}, line {error.lineno}: {error.msg}") from None
-    except (Exception, SystemExit) as error:
-        frames = [f.lineno for f in traceback.extract_tb(error.__traceback__) if f.filename == str(path)]
-        where = f"{path}, line {frames[-1]}" if frames else str(path)
-        raise ValueError(f"{where}: {type(error).__name__}: {shortened(str(error))}") from error
-
-
-def shortened(value: Any) -> str:
-    """One line of at most 100 characters."""
-    text = " ".join((value if isinstance(value, str) else repr(value)).split())
-    return text if len(text) <= 100 else f"{text[:97]}..."

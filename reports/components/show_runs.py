@@ -9,7 +9,7 @@ from mpm_verify.reports import words
 from mpm_verify.reports.components.show import Row, Table
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences import failures
-from mpm_verify.solver.plugins import is_file, on_screen, split
+from mpm_verify.solver.plugins import is_file, label, split
 
 
 def runs(record: Record) -> Table:
@@ -30,7 +30,7 @@ def parameters(record: Record) -> Table:
     for run in record.study.runs:
         result = record.result(run)
         ends = (words.sci(result.dt), result.digest) if result else (words.DASH, run.digest)
-        values = {**asdict(run), "solution": on_screen(run.solution)}
+        values = {**asdict(run), "solution": label(run.solution)}
         rows.append((*(_text(value) for value in values.values()), *ends))
     return Table(
         "Parameters of every run",
@@ -48,7 +48,7 @@ def problem(record: Record) -> Table:
     """
     files = sorted({split(name)[0] for name in record.solutions if is_file(name)})
     found = _shared(record, "parameters", "The problem")
-    rows = tuple(("solution file", file, f"solution {on_screen(file)}") for file in files)
+    rows = tuple(("solution file", file, f"solution {label(file)}") for file in files)
     return replace(found, rows=(*rows, *found.rows))
 
 
@@ -78,7 +78,7 @@ def _with_solution(record: Record, row: Sequence[str], run: Run | None = None) -
     """A column for the solution where there is more than one."""
     if len(record.solutions) < 2:
         return tuple(row)
-    return (*row, on_screen(run.solution) if run else "solution")
+    return (*row, label(run.solution) if run else "solution")
 
 
 def _run(record: Record, run: Run) -> Row:

@@ -29,7 +29,7 @@ def material(name: list[str], asked: dict[str, list[str]], out: Path | None, **m
 
         given: dict[str, Any] = values(ElementRun, asked) | {"material": name}
         parts = []
-        own = {key: given.pop(key) for key in ("path", "units") if key in given}
+        own: dict[str, Any] = {key: given.pop(key) for key in ("path", "units") if key in given}
         if "units" in own and "path" not in own:
             raise ValueError("--units belongs to --path FILE.csv")
         if "test" in given or not own:
