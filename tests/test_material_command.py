@@ -60,7 +60,7 @@ def test_a_wrong_direction_of_flow_is_seen(monkeypatch: pytest.MonkeyPatch) -> N
     wrong = create("mpm_verify.solver.material", "mohr_coulomb:psi=31").constants()
     monkeypatch.setattr(mohr_coulomb.MohrCoulomb, "constants", lambda self: wrong)
     missed = {check.name for check in law_checks(law) if check.outcome is not Outcome.PASS}
-    assert "plane: largest miss, zz in any place" in missed
+    assert "plane: largest miss, zz in any position" in missed
     assert "dilation, vertical strain over shear" in missed
 
 

@@ -51,7 +51,7 @@ def checks(law: Any, studied: ElementStudy) -> list[Check]:
     group, found = studied.test.title, []
     if studied.failed:
         at = f"step {studied.failed.step} of {studied.failed.steps}"
-        return [Check(group, f"end at {at}", float("nan"), 0.0, "absolute", "every step is solved")]
+        return [Check(group, f"early end, at {at}", float("nan"), 0.0, "absolute", "all steps solved")]
     finest = studied.errors[-1]
     if studied.truth is not None:
         second = 1e-6 * (1600 / studied.steps[-1]) ** 2  # what order 2 makes of 1e-6 in 1600 steps

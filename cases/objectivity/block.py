@@ -76,5 +76,5 @@ def checks(block: Block, found: Found) -> list[Check]:
         Check(GROUP, "1 m: inertial fraction of the mean vertical stress", away[0], away[1], "absolute",
               "the same box at rest, with inertial forces", 0.003),
         Check(GROUP, "1 m: largest distance in the turn", misses(large, block).max(), misses(small, block).max(),
-              "at least", "inertia and waves that the small block does not have"),
+              "at least", "inertia and waves of the large block alone"),
     ]  # fmt: skip

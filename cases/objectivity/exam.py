@@ -48,7 +48,7 @@ def control_checks() -> list[Check]:
     for name in (*available(NEGATIVE_CONTROLS), *available(RATES)):
         miss = float(kinematic.order_errors(name, (COARSE,))[0])
         wrong = name in available(NEGATIVE_CONTROLS)
-        source = "a control has to be seen" if wrong else "a rate must not look like one"
+        source = "visible miss of a control" if wrong else "invisible miss of a rate"
         what = f"{name}: miss after {COARSE} steps"
         checks.append(Check(CONTROLS, what, miss, MISS, "at least" if wrong else "at most", source))
     return checks

@@ -94,7 +94,7 @@ def test(examination: Examination, name: str, title: str, add: Add) -> Section:
         images.append((add(f"{name}_volume", volume, f"{title}: volume strain."), "Volume strain."))
     checks = [check for check in examination.checks if check.group == title]
     tables = [checks_table("Checks", checks)] if checks else []
-    return Section(name, title, notes(examination, title), images, tables)
+    return Section(name, title, [" ".join(notes(examination, title))], images, tables)
 
 
 def steps(examination: Examination, titles: dict[str, str], add: Add) -> Section:
