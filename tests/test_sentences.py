@@ -18,7 +18,6 @@ from xml.etree import ElementTree
 import fixtures_study as fixtures
 import numpy as np
 import pytest
-from mpm_verify.solver.sources import TOP
 
 from mpm_verify.cases.harness.analysis import Analysis
 from mpm_verify.cases.harness.store import Store
@@ -33,6 +32,7 @@ from mpm_verify.reports.export.junit import write_junit
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences import commands, failures, stalls, verdicts
 from mpm_verify.solver.failure import Failure, FailureKind
+from mpm_verify.solver.source_hash import TOP, closure
 
 SENTENCES = (failures, verdicts, stalls, commands)
 SECOND = Expectation(2.0)
@@ -433,7 +433,14 @@ def test_the_numeric_layer_imports_no_sentences() -> None:
             assert "reports.sentences" not in file.read_text(), file
 
 
-def test_numbers_are_finite(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_names_of_results_hash_no_words() -> None:
+    """The closure of what computes a run has what makes its failures, and nothing that says them."""
+    modules = closure("mpm_verify.cases.mms.execute")
+    assert any("solver.failure" in name for name in modules)
+    assert not [name for name in modules if "reports" in name]
+
+
+def test_numbers_are_finite() -> None:
     """What goes into a JSON document."""
     for example in EVERY:
         numbers = judged(example).verdict.reason.numbers.values()

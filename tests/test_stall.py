@@ -16,8 +16,8 @@ from mpm_verify.cases.judging.records import Ended
 from mpm_verify.cases.judging.stall import Cause, CauseCode, Finding, Measured, Peer, Stall, explain
 from mpm_verify.cases.mms import case as mms
 from mpm_verify.cases.mms.run import Result, Run
+from mpm_verify.reports import words
 from mpm_verify.reports.components import stalls as told
-from mpm_verify.reports.components import words
 from mpm_verify.reports.sentences import stalls as sentences
 from mpm_verify.reports.sentences import verdicts
 from mpm_verify.solver._jit import use_threads
