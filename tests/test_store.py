@@ -13,10 +13,10 @@ import pytest
 
 from mpm_verify.cases.harness import identity
 from mpm_verify.cases.harness.store import Store, StoreError
-from mpm_verify.cases.harness.study import Failure, QuantityPlan, Study
+from mpm_verify.cases.harness.study import QuantityPlan, Study
 from mpm_verify.cases.judging.order import Expectation
-from mpm_verify.cases.mms import run as contract
-from mpm_verify.cases.mms.run import Result, Run, sources_digest
+from mpm_verify.cases.mms.run import Result, Run
+from mpm_verify.solver.failure import Failure, FailureKind
 
 RUN = Run("cpdi", "axis_aligned", "neo_hookean", 8, 4, 0.4)
 OTHER = {str: "other", int: 7, float: 0.125, tuple: (0.25, 0.0)}
@@ -49,8 +49,13 @@ def no_space(*_: object, **__: object) -> None:
     "result",
     [
         finished(),
-        replace(finished(), status="failed", errors={}, failure=Failure("det F <= 0", 21, 35, (2, 2))),
-        replace(finished(), status="failed", errors={}, failure=Failure("dt above the stability limit")),
+        replace(finished(), status="failed", errors={}, failure=Failure(FailureKind.INVERTED, 21, 35, (2, 2))),
+        replace(
+            finished(),
+            status="failed",
+            errors={},
+            failure=Failure(FailureKind.UNSTABLE_STEP, numbers={"dt": 0.2, "limit": 0.1}),
+        ),
     ],
     ids=["finished", "failed", "failed at once"],
 )
