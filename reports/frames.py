@@ -153,3 +153,12 @@ def joined(*parts: Mapping[str, Any]) -> dict[str, Any]:
             raise ValueError(f"two columns of a table have the name {sorted(both)[0]!r}")
         row |= part
     return row
+
+
+def flat(values: Mapping[str, Any]) -> dict[str, Any]:
+    """The same with a pair as two columns, NAME_x and NAME_y."""
+    found: dict[str, Any] = {}
+    for name, value in values.items():
+        pair = isinstance(value, tuple)
+        found |= dict(zip((f"{name}_x", f"{name}_y"), value, strict=True)) if pair else {name: value}
+    return found
