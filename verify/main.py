@@ -10,6 +10,7 @@ from typing import Annotated, Any
 
 import typer
 
+from mpm_verify.solver.plugins import CASES, available
 from mpm_verify.verify.run import DEFECT, USAGE
 
 STOPPED = 130
@@ -17,9 +18,14 @@ COMMANDS = ("mms", "methods", "graded", "column", "sweep", "element", "objectivi
 
 
 def files() -> list[str]:
-    """Files of the commands: those of COMMANDS first, then by name."""
-    there = sorted(file.stem for file in Path(__file__).with_name("commands").glob("[a-z]*.py"))
+    """Names of the commands' files and of cases: those of COMMANDS first, then by name."""
+    there = sorted({*own(), *available(CASES)})
     return [*(name for name in COMMANDS if name in there), *(name for name in there if name not in COMMANDS)]
+
+
+def own() -> list[str]:
+    """Commands that have a file of their own; a case without one has the command that any case can have."""
+    return [file.stem for file in Path(__file__).with_name("commands").glob("[a-z]*.py")]
 
 
 def application(asked: str = "") -> Any:
@@ -28,7 +34,10 @@ def application(asked: str = "") -> Any:
                       context_settings={"help_option_names": ["-h", "--help"]})  # fmt: skip
     app.callback(invoke_without_command=True)(root)
     for name in [asked] if asked in files() else files():
-        import_module(f"mpm_verify.verify.commands.{name}").add(app)
+        if name in own():
+            import_module(f"mpm_verify.verify.commands.{name}").add(app)
+        else:
+            import_module("mpm_verify.verify.commands._case").add(app, name)
     return app
 
 
