@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from math import isfinite
 from typing import Any, Literal
 
-from mpm_verify.cases.judging.records import Outcome
+from mpm_verify.cases.judging.records import Outcome, worst
 from mpm_verify.solver.failure import Failure
 from mpm_verify.solver.state import Floats
 
@@ -79,10 +79,8 @@ class Examination:
 
     @property
     def outcome(self) -> Outcome:
-        """The worst of its checks; INCONCLUSIVE where there are none."""
-        found = {check.outcome for check in self.checks}
-        worst = (Outcome.ERROR, Outcome.FAIL, Outcome.PASS)
-        return next((outcome for outcome in worst if outcome in found), Outcome.INCONCLUSIVE)
+        """The worst of its checks, a FAIL before an ERROR; INCONCLUSIVE where there are none."""
+        return worst(check.outcome for check in self.checks)
 
     @property
     def groups(self) -> tuple[str, ...]:

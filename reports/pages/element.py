@@ -38,7 +38,7 @@ def sections(examination: Examination, add: Add) -> Sequence[Section]:
             known,
         )
     ]
-    return [*tests, steps(examination, titles, add), *(own if known else [])]
+    return [*tests, *([steps(examination, titles, add)] if titles else []), *(own if known else [])]
 
 
 def test(examination: Examination, name: str, title: str, add: Add) -> Section:
