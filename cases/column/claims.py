@@ -40,7 +40,7 @@ class ClaimCode(StrEnum):
     VOLUMETRIC_FRONT = "volumetric_front"  # smoothing, Figure 7
     VOLUMETRIC_HEIGHT = "volumetric_height"
     DEVIATORIC_FRONT = "deviatoric_front"
-    MATERIALS_CLOSE = "materials_close"  # law, Figure 8
+    MATERIALS_CLOSE = "materials_close"  # material, Figure 8
     SAND_STIFFER = "sand_stiffer"
     BOTH_NEAR = "both_near"
     SAND_EARLY = "sand_early"
@@ -207,7 +207,7 @@ def of_smoothing(family: Sequence[FinishedRun], known: Experiment) -> list[Claim
     return found
 
 
-def of_law(family: Sequence[FinishedRun], known: Experiment) -> list[Claim]:
+def of_material(family: Sequence[FinishedRun], known: Experiment) -> list[Claim]:
     """Figure 8."""
     by = {one.run.material.partition(":")[0]: one for one in reversed(family)}
     if not {"mohr_coulomb", "ubcsand"} <= by.keys():
@@ -218,7 +218,7 @@ def of_law(family: Sequence[FinishedRun], known: Experiment) -> list[Claim]:
     difference = front - np.interp(t, plain.curves["t"], plain.curves["front_99"])
     early = float(np.abs(difference[t <= EARLY]).max(initial=0.0))
     late = abs(float(difference[-1]))
-    both = compared("law", sand, plain)
+    both = compared("material", sand, plain)
     near = all(abs(beyond(one.front, known.front)) <= NEAR for one in (plain, sand))
     found: Mapping[ClaimCode, tuple[bool | None, dict[str, float]]] = {
         ClaimCode.MATERIALS_CLOSE: (abs(apart) <= CLOSE, {"apart": apart, "close": CLOSE}),
@@ -227,7 +227,7 @@ def of_law(family: Sequence[FinishedRun], known: Experiment) -> list[Claim]:
         ClaimCode.SAND_EARLY: (None, {"until": EARLY}),
         ClaimCode.SAND_LATE: (late < early, {"until": EARLY, "early": early, "late": late}),
     }
-    return [Claim(code, "law", reproduced, both, known, numbers) for code, (reproduced, numbers) in found.items()]
+    return [Claim(code, "material", reproduced, both, known, numbers) for code, (reproduced, numbers) in found.items()]
 
 
 Speaker = Callable[[Sequence[FinishedRun], Experiment], list[Claim]]
@@ -235,5 +235,5 @@ SPEAK: dict[str, Speaker] = {
     "ppc": of_particles,
     "damping": of_damping,
     "smoothing": of_smoothing,
-    "material": of_law,
+    "material": of_material,
 }

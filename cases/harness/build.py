@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from itertools import product
+from math import prod
 from typing import Any, cast, get_type_hints
 
 from pydantic import TypeAdapter, ValidationError
@@ -13,6 +14,7 @@ from mpm_verify.cases.harness.refinement import complete, refines
 from mpm_verify.cases.harness.study import QuantityPlan, RunRecord, Study, head
 
 Values = Mapping[str, Sequence[Any]]
+MOST = 10_000  # runs of a study, without those that its judgement adds
 FIRST = ("method", "solution", "material")  # axes whose values begin the name of a study
 
 
@@ -95,6 +97,8 @@ def _runs(asked: Asked) -> tuple[tuple[Any, ...], list[QuantityPlan[Any]]]:
         order = [key for key in values if key not in inner] + inner
     else:
         order = [*(key for key in asked.values if key in values), *(key for key in values if key not in asked.values)]
+    if (count := prod(len(values[key]) for key in order)) > MOST:
+        raise ValueError(f"{count} runs are asked for, and {MOST} is the most; give fewer values, or several studies")
     points = [dict(zip(order, point, strict=True)) for point in product(*(values[key] for key in order))]
     runs = tuple(dict.fromkeys(make(case, point) for point in points))
     for courant in times:

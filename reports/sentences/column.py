@@ -33,7 +33,7 @@ def value(axis: str, of: Any) -> str:
         return f"{100 * of:g} % damping"
     if axis in AFTER:
         return f"{of} {AFTER[axis]}"
-    if axis in ("method", "law"):
+    if axis in ("method", "material"):
         return str(of)
     return f"{axis} {f'{of:g}' if isinstance(of, float) else of}"
 
@@ -45,7 +45,7 @@ def listed(values: Mapping[str, Any]) -> str:
 
 def label(study: ColumnStudy, run: ColumnRun) -> str:
     """A run by what the study varies; by its method, mesh and material where it varies nothing."""
-    return listed({axis: getattr(run, axis) for axis in study.axes or ("method", "cells", "ppc", "law")})
+    return listed({axis: getattr(run, axis) for axis in study.axes or ("method", "cells", "ppc", "material")})
 
 
 def quantity(key: str) -> str:
