@@ -39,7 +39,9 @@ def own(folder: Path, text: str) -> str:
 
 
 def test_a_product_without_doubles(tmp_path: Path) -> None:
-    text = '[run]\nppc = 1\nlimit = inf\n[sweep]\ncells = [4, 7, 4]\noffset = [[0, 0], [0.1, 0.2]]\nmaterial = ["ubcsand"]'
+    text = (
+        '[run]\nppc = 1\nlimit = inf\n[sweep]\ncells = [4, 7, 4]\noffset = [[0, 0], [0.1, 0.2]]\nmaterial = ["ubcsand"]'
+    )
     study = read(own(tmp_path, text), "verify sweep own.toml")
     assert [(run.cells, run.offset) for run in study.runs] == [
         (4, (0.0, 0.0)), (4, (0.1, 0.2)), (7, (0.0, 0.0)), (7, (0.1, 0.2)),
@@ -59,7 +61,10 @@ def test_the_study_in_readme(tmp_path: Path) -> None:
     ("text", "says"),
     [
         ("[run", "cannot be read as TOML"),
-        ("[runs]\nppc = 1", "the file has 'runs', and may have case, title, words, finish, replicates, run, sweep, part"),
+        (
+            "[runs]\nppc = 1",
+            "the file has 'runs', and may have case, title, words, finish, replicates, run, sweep, part",
+        ),
         ("[run]\nparticles = 1", "column has no axis 'particles'; it has method, cells"),
         ("[sweep]\ncase = ['mms']", "column has no axis 'case'"),
         ("run = 3", r"run must be a table, \[run\], not 3"),

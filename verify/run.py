@@ -36,7 +36,7 @@ class Settings:
     json_output: bool = False
     junit: Path | None = None
     summary: Path | None = None
-    page: bool | None = None  # None: unless JSON, JUnit or a summary are asked for
+    page: bool | None = None  # None: unless JSON or JUnit are asked for alone
     vtk: bool = False
     dry_run: bool = False
     yes: bool = False
@@ -98,7 +98,7 @@ def draw(record: "Record", settings: Settings) -> Path | None:
     """The page of the study; None where none is asked for."""
     wanted = settings.page
     if wanted is None:
-        wanted = not (settings.json_output or settings.junit)
+        wanted = settings.vtk or not (settings.json_output or settings.junit)
     return page_of(record, settings.vtk) if wanted else None
 
 

@@ -1,7 +1,7 @@
 """Checks: numbers held against what is known; and what a case examined, with curves to draw and remarks."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import isfinite
 from typing import Any, Literal
 
@@ -87,3 +87,12 @@ class Examination:
         """Names of the parts, in their order."""
         noted = [finding.group for finding in self.findings if finding.group]
         return tuple(dict.fromkeys([*(check.group for check in self.checks), *noted]))
+
+
+def gathered(examinations: Mapping[str, Examination]) -> tuple[Check, ...]:
+    """Checks of all; where there are several, groups begin with the name of their Examination."""
+    if len(examinations) == 1:
+        return next(iter(examinations.values())).checks
+    return tuple(
+        replace(check, group=f"{name}: {check.group}") for name, one in examinations.items() for check in one.checks
+    )
