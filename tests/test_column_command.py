@@ -3,11 +3,13 @@
 import json
 import sys
 from pathlib import Path
+from shutil import copytree
 from typing import Any
 from xml.etree import ElementTree
 
 import pytest
 
+from mpm_verify.cases.column.claims import ClaimCode
 from mpm_verify.cases.column.exam import ColumnRemark, examine
 from mpm_verify.cases.column.run import ColumnRun
 from mpm_verify.cases.harness.checks import Remark
@@ -64,7 +66,7 @@ def swept(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_a_column_from_release_to_rest(verify: Any) -> None:
     """Its numbers, the checks, a page with an animation, and files for ParaView."""
-    ended = verify("column", *SMALL, "--vtk", "--junit", "out.xml")
+    ended = verify("column", *SMALL, "--vtk", "--junit", "out.xml")  # snapshots are asked for, so there is a page
     assert (ended.code, ended.err) == (0, "")
     assert "1 of 1 runs came to their end. The front comes to" in ended.out
     assert "report: results/column-cells-2-ppc-4/report.html" in ended.out
@@ -147,6 +149,31 @@ def test_what_is_missing_is_run(verify: Any, swept: Path) -> None:
     again = json.loads((swept / "runs" / f"{run.digest}.json").read_text())
     assert again["values"] == json.loads(kept)["values"]
     assert {file: file.stat().st_mtime_ns for file in others} == others
+
+
+def test_curves_that_cannot_be_read_cost_figures_alone(verify: Any, swept: Path, tmp_path: Path) -> None:
+    """Checks and numbers stand, and the exit code; the file is named, its film is gone, the others' are there."""
+    folder = Path(copytree(swept, tmp_path / "out"))
+    whole = read(folder).analysis
+    digest = whole.more.study.runs[1].digest
+    file = folder / "runs" / f"{digest}.npz"
+    file.write_bytes(file.read_bytes()[:1000])
+    found = read(folder).analysis
+    assert found.checks == whole.checks
+    assert found.more.refined == whole.more.refined
+    gone = {claim.code for claim in whole.more.claims} - {claim.code for claim in found.more.claims}
+    assert gone <= {ClaimCode.POTENTIAL_KEPT, ClaimCode.KINETIC_CHANGED}
+    assert len(found.more.claims) == len(whole.more.claims) - 2  # those of the one family with that run
+    ended = verify("sweep", str(swept.parent / "small.toml"), "--out", str(folder), "--vtk")
+    assert (ended.code, ended.err) == (0, "")
+    line = f"The curves in runs/{file.name} cannot be read, and their figures are left out"
+    assert line in ended.out
+    text = (folder / "report.html").read_text()
+    assert line in text
+    assert text.count('class="film"') == 5
+    assert (folder / "tables" / "runs.csv").read_text().count("\n") == 7
+    assert digest not in (folder / "tables" / "curves.csv").read_text()
+    assert len(list((folder / "vtk").glob("*.pvd"))) == 2 * 5 or len(list((folder / "vtk").glob("*.pvd"))) == 5
 
 
 def test_a_failed_run_is_a_result(verify: Any, tmp_path: Path) -> None:

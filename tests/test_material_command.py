@@ -20,8 +20,8 @@ from mpm_verify.cases.element.study import study
 from mpm_verify.cases.harness.build import Asked, build
 from mpm_verify.cases.harness.checks import Examination
 from mpm_verify.cases.judging.records import Outcome
-from mpm_verify.reports.frames import read
 from mpm_verify.reports.figures.element import stress
+from mpm_verify.reports.frames import read
 from mpm_verify.reports.sentences.remarks import lead, sentence
 from mpm_verify.reports.sentences.remarks import notes as told_notes
 from mpm_verify.reports.sentences.remarks import parameters as shown
@@ -259,6 +259,53 @@ def test_the_share_counts_the_steps() -> None:
     one = replace(study(law, TESTS["isotropic"], 5e3, 1), curve={"s": sx, "sx": sx, "sy": sy, "sz": sz, "tau": tau})
     assert beyond(law, one) == pytest.approx(2 / 3)
     assert " in 66.7 % of the steps" in sentence(notes(law, one)[-1])
+
+
+def test_curves_that_cannot_be_read_cost_figures_alone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Not a check, not an order, not the exit code; the file is named, and its figures are gone."""
+    words = ("material", "mohr_coulomb", "--test", "biaxial,shear_stress", "--steps", "10", "--out", str(tmp_path))
+    before = json.loads(verify(monkeypatch, capsys, *words, "--json", "--page")[1])
+    figures = (tmp_path / "report.html").read_text().count("<img")
+    run = next(run for run in before["runs"] if run["test"] == "shear_stress")
+    file = tmp_path / "runs" / f"{run['digest']}.npz"
+    file.write_bytes(file.read_bytes()[:1000])
+    code, said, err = verify(monkeypatch, capsys, *words)
+    assert (code, err) == (0, "")
+    line = f"The curves in runs/{file.name} cannot be read, and their figures are left out"
+    assert line in " ".join(said.split())
+    page = (tmp_path / "report.html").read_text()
+    assert line in page
+    assert page.count("<img") == figures - 3
+    after = json.loads(verify(monkeypatch, capsys, *words, "--json")[1])
+    assert after["checks"] == before["checks"]
+    (old,), (new,) = before["more"].values(), after["more"].values()
+    unread = {"code": "element.unread", "numbers": {"files": f"runs/{file.name}"}, "group": ""}
+    assert [finding for finding in new["findings"] if finding != unread] == old["findings"]
+    assert unread in new["findings"]
+
+
+def test_several_materials_and_paths_are_told_apart(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Checks, findings, figures and headings of each; two files of one name are two paths."""
+    for name, shear in (("a", "0.01"), ("b", "0.02")):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "mine.csv").write_text(f"exx,eyy,gxy\n0,0,0\n0,-0.001,{shear}\n")
+    paths = ",".join(str(tmp_path / name / "mine.csv") for name in "ab")
+    words = ("material", "neo_hookean", "hypoelastic", "--path", paths, "--steps", "4", "--out", str(tmp_path / "out"))
+    code, said, err = verify(monkeypatch, capsys, *words, "--json", "--page")
+    assert (code, err) == (0, "")
+    told = json.loads(said)
+    groups = {check["group"] for check in told["checks"]}
+    names = ("neo_hookean, 5000 Pa, 4 steps", "hypoelastic, 5000 Pa, 4 steps")
+    assert tuple(told["more"]) == names
+    tests = {f"{name}: strain path of mine.csv ({number})" for name in names for number in (1, 2)}
+    assert tests <= groups
+    page = (tmp_path / "out" / "report.html").read_text()
+    assert all(f">{heading}</h2>" in page for heading in tests)
+    assert page.count("stress path.") == 4
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ axis alone. What "little" and "close" mean is said here, since the paper gives n
 runs, or what is known of the experiment, cannot tell. The sentences are in reports/sentences/column.py.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from itertools import pairwise

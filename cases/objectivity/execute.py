@@ -47,8 +47,8 @@ def execute(run: Block, tick: Callable[[float], None] = lambda fraction: None) -
     else:
         curves, checks, values = prescribed(run)
     result = ObjectivityResult(
-        run=run, digest=run.digest, status="failed" if failure else "finished", failure=failure, checks=checks, values=values,
-        steps=2 * run.steps if run.part == BLOCK else 0, particles=run.particles, dt=1 / run.steps,
+        run=run, digest=run.digest, status="failed" if failure else "finished", failure=failure, checks=checks,
+        values=values, steps=2 * run.steps if run.part == BLOCK else 0, particles=run.particles, dt=1 / run.steps,
         wall_s=time.perf_counter() - started, cpu_s=time.process_time() - used, peak_memory_mb=peak_memory(),
         environment=environment(), parameters=parameters("material", run.law),
     )  # fmt: skip

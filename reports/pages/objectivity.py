@@ -19,8 +19,8 @@ from mpm_verify.reports.sentences.remarks import notes
 from mpm_verify.reports.words import sci
 
 MISREAD = (
-    "Shear stress along the motion of Figure 2 by each negative control, kinematic, 200 steps; the broad line is right, "
-    "and crosses are the controls that this figure cannot tell from it."
+    "Shear stress along the motion of Figure 2 by each negative control, kinematic, 200 steps; the broad line is "
+    "right, and crosses are the controls that this figure cannot tell from it."
 )
 MISSES = "Largest miss of each negative control, as a fraction of the stress; ∞ where the run failed"
 
