@@ -5,7 +5,7 @@ A package with a module `_own` takes the path of a user's file too: `_own.load(p
 
 import hashlib
 import re
-from dataclasses import fields
+from dataclasses import Field, fields
 from functools import cache
 from importlib import import_module
 from math import isfinite
@@ -85,6 +85,12 @@ def absolute(specification: str) -> str:
     return ":".join(filter(None, [str(Path(name).resolve()), rest])) if is_file(name) else specification
 
 
+def on_screen(specification: str) -> str:
+    """Name on screen: of a user's file its stem, with the parameters."""
+    name, rest = split(specification)
+    return ":".join(filter(None, [Path(name).stem, rest])) if is_file(name) else specification
+
+
 @cache
 def source(path: Path) -> str:
     """Text of a user's file, read once a process: what is hashed is what is run. Raises ValueError."""
@@ -122,16 +128,22 @@ def create(package: str, specification: str) -> Any:
     """
     name, rest = split(specification)
     plugin = load(package, name)
-    allowed = {item.name: item.type for item in fields(plugin)}
-    parameters: dict[str, float | str] = {}
+    allowed = parameters_of(plugin)
+    given: dict[str, float | str] = {}
     for item in filter(None, rest.split(",")):
         key, _, value = item.partition("=")
         if key not in allowed:
             raise ValueError(f"{name} has no parameter {key!r}; it has {', '.join(allowed) or 'none'}")
-        if key in parameters:
+        field = allowed[key]
+        if field.name in given:
             raise ValueError(f"{name}: {key} is given twice")
-        parameters[key] = number(name, key, value) if allowed[key] in (float, "float") else value
-    return plugin(**parameters)
+        given[field.name] = number(name, key, value) if field.type in (float, "float") else value
+    return plugin(**given)
+
+
+def parameters_of(plugin: Any) -> "dict[str, Field[Any]]":
+    """Fields of a plug-in by the name that a user types: a field may bear another, so that it hides no attribute."""
+    return {item.metadata.get("typed", item.name): item for item in fields(plugin)}
 
 
 def number(name: str, key: str, value: str) -> float:

@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import cache
 from math import ceil, sqrt
 from typing import Any
@@ -21,7 +21,7 @@ from mpm_verify.mms.blind_spots import BlindSpot
 from mpm_verify.mms.manufacture import Manufactured, manufacture
 from mpm_verify.solver.boundary import box, moving
 from mpm_verify.solver.layout import CENTRED, Layout, parallelograms
-from mpm_verify.solver.plugins import LAYOUTS, MATERIALS, METHODS, SOLUTIONS, TRANSFERS, create, load
+from mpm_verify.solver.plugins import LAYOUTS, MATERIALS, METHODS, SOLUTIONS, TRANSFERS, create, load, parameters_of
 from mpm_verify.solver.state import Floats, Grid, Particles
 from mpm_verify.solver.step import Model, RunFailed, Scheme, advance, check_time_step
 
@@ -63,8 +63,7 @@ def setup(run: Run) -> tuple[Model, Comparison, int]:
     free = solution.boundary == "free"  # no wall ties the grid to the body: the offset moves the grid
     shift = -dx * np.array(run.offset) if free else np.zeros(2)
     grid = Grid(dx, solution.lower - below + shift, solution.upper + above + shift)
-    steps = ceil(solution.duration / (run.courant * grid.dx / solution.C) * (1 - 1e-12))
-    dt = solution.duration / steps
+    steps, dt = time_steps(solution, grid.dx, run.courant)
     behind = 0.5 * dt if run.staggered else 0.0
 
     exact, basis = manufactured(run.solution, run.material), load(METHODS, run.method)()
@@ -81,6 +80,12 @@ def setup(run: Run) -> tuple[Model, Comparison, int]:
     packing = Packing(exact, layout, dx) if run.layout != "uniform" or len(layout) <= COUNTED else None
     norms, gaps = Norms(len(particles), float(particles.V0.mean())), Gaps(layout)
     return model, Comparison(exact, norms, gaps, packing, new_shares(particles), behind), steps
+
+
+def time_steps(solution: Any, dx: float, courant: float) -> tuple[int, float]:
+    """Number of steps of length courant dx / C at most that fill the duration, and their length."""
+    steps = ceil(solution.duration / (courant * dx / solution.C) * (1 - 1e-12))
+    return steps, solution.duration / steps
 
 
 def laid_out(run: Run, solution: Any, exact: Manufactured) -> Layout:
@@ -214,4 +219,5 @@ def snapshot(run: Run, model: Model, comparison: Comparison) -> Arrays:
 def parameters(kind: str, specification: str) -> dict[str, Any]:
     """Every parameter of a solution or material, the defaults too."""
     package = {"solution": SOLUTIONS, "material": MATERIALS}[kind]
-    return {f"{kind} {key}": value for key, value in asdict(create(package, specification)).items()}
+    plugin: Any = create(package, specification)
+    return {f"{kind} {key}": getattr(plugin, field.name) for key, field in parameters_of(plugin).items()}

@@ -11,7 +11,7 @@ from typing import Any
 
 from mpm_verify.cases.harness.study import QUANTITIES
 from mpm_verify.cases.judging.records import Expectation
-from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS, create, is_file, split
+from mpm_verify.solver.plugins import MATERIALS, METHODS, SOLUTIONS, create, is_file, load, split
 
 JUDGED = ("u", "rms")
 JUDGED_PPC = (4, 9)
@@ -106,6 +106,7 @@ REGISTERED: dict[str, dict[str, str]] = {
 # With 9 particles per cell these still have order 2 on the finest grids that were run (96 cells), or have not settled:
 # their stall lies beyond, and nothing is registered of it.
 LATER_WITH_9 = {("cpgimp", "swirl"), ("gimp", "generalised_vortex")}
+LARGE = ("swirl", "expanding_ring", "generalised_vortex")  # solutions of large deformation, with shear and rotation
 OWN_MATERIAL = ("expanding_ring",)  # with another its edges are not free of traction, and no order is expected
 # Who says so: that u of this method converges at order 2, or does not, once particles cross cells.
 LITERATURE = {
@@ -181,15 +182,19 @@ def expected(
 ) -> Expectation | None:
     """The registered expectation, for canonical specifications; None where there is none: only shown.
 
-    `usual` says that the scheme is the one whose errors are recorded. Of a user's own solution the order is expected
-    that its file declares, if it does.
+    `usual` says that the scheme is the one whose errors are recorded. Of a user's own solution the order of u is
+    expected that its file declares, or else the one that the method promises.
     """
     if norm != "rms" or ppc not in JUDGED_PPC:
         return None
     plugin: Any = create(SOLUTIONS, solution)
     if is_file(solution):
-        declared = plugin.order if quantity == "u" else None
-        return Expectation(declared, source="declared in the solution's file") if declared else None
+        if quantity != "u":
+            return None
+        declared, promise = plugin.order, promised(method, plugin)
+        if declared:
+            return Expectation(declared, source="declared in the solution's file")
+        return Expectation(promise, source="declared by the method") if promise else None
     name = split(solution)[0]
     regime = "small amplitude" if small(plugin) else name
     if method not in REGISTERED.get(regime, {}) or split(material)[0] != "neo_hookean":
@@ -203,6 +208,18 @@ def expected(
         RECORDED.get((method, solution, ppc), (None, None)) if usual and own and quantity == "u" else (None, None)
     )
     return replace(expectation, constant_h=h, constant=error)
+
+
+def promised(method: str, solution: Any) -> float | None:
+    """Order of u that a method declares and keeps on this solution; None where particles cross cells and it does not.
+
+    A method keeps it that is registered with an order on each of the solutions of large deformation.
+    """
+    crosses = solution.edges.reach > SMALL * float(solution.upper[0] - solution.lower[0])
+    keeps = all(method in REGISTERED[name] and registered(name, method, "u").order for name in LARGE)
+    if crosses and not keeps:
+        return None
+    return float(load(METHODS, method).order)
 
 
 def later_with_9(method: str, solution: str, expectation: Expectation) -> bool:

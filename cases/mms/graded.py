@@ -12,7 +12,7 @@ from math import exp, log
 
 from mpm_verify.cases.harness.study import QuantityPlan, Result, Run, Study
 from mpm_verify.cases.mms.sweep import Sweep, build, canonical
-from mpm_verify.solver.plugins import LAYOUTS
+from mpm_verify.solver.plugins import LAYOUTS, on_screen
 
 Results = Mapping[str, Result]
 Point = tuple[float, float]  # cost, error
@@ -53,7 +53,7 @@ def build_graded(plan: Plan, command: str, name: str) -> Study:
     ] = {}  # of the uniform layout, which comes first: the others have the same names
     for d in (d for part in parts for d in part.plans):
         declared.setdefault((d.method, d.solution, d.ppc, d.quantity, d.norm), replace(d, judged=False))
-    title = f"Uniform and graded layouts of particles on {' and '.join(plan.solutions)}"
+    title = f"Uniform and graded layouts of particles on {' and '.join(map(on_screen, plan.solutions))}"
     return Study(name, title, command, runs, tuple(declared.values()))
 
 

@@ -11,6 +11,8 @@ from typing import Any
 
 from mpm_verify.cases.harness.study import NORMS, QUANTITIES, QuantityPlan, Run, Study
 from mpm_verify.cases.mms.expectations import JUDGED, expected
+from mpm_verify.cases.mms.time_step import check_time_steps
+from mpm_verify.mms.cells import fitting
 from mpm_verify.mms.energy import check_energy
 from mpm_verify.solver.layout import CENTRED, Offset
 from mpm_verify.solver.plugins import (
@@ -23,6 +25,8 @@ from mpm_verify.solver.plugins import (
     available,
     create,
     is_file,
+    on_screen,
+    parameters_of,
     split,
 )
 from mpm_verify.solver.stress_update import check_stress_update
@@ -60,6 +64,11 @@ class Sweep:
         words = ["mms", *self.methods, *(str(changed.pop(key)) for key in ("solution", "material") if key in changed)]
         words += [f"{key}-{value}" for key, value in changed.items() if key != "methods"]
         return re.sub(r"[^A-Za-z0-9.]+", "-", " ".join(words)).strip("-")[:120]
+
+    @property
+    def fitted(self) -> "Sweep":
+        """The same with cells that fill the body, near those that are asked for. Raises ValueError."""
+        return replace(self, cells=fitting(create(SOLUTIONS, self.solution), self.cells))
 
     def check(self) -> None:
         """Raise ValueError with one line that says what is wrong and what is allowed."""
@@ -126,10 +135,13 @@ def build(sweep: Sweep, command: str, name: str) -> Study:
     timed = [replace(run, courant=courant) for run in finest for courant in sorted(set(sweep.times), reverse=True)]
     shifted = [replace(run, offset=offset) for run in runs for offset in offsets(sweep.replicates)[1:]]
     every = tuple(dict.fromkeys(runs + halved + timed + shifted))
+    if not sweep.force:
+        courants = sorted({sweep.courant, *sweep.times})
+        check_time_steps(sweep.solution, create(SOLUTIONS, solution), create(MATERIALS, material), every, courants)
     named = (
         " and ".join(m.upper() for m in sweep.methods) if len(sweep.methods) < 4 else f"{len(sweep.methods)} methods"
     )
-    title = f"{named} against the manufactured solution {solution}"
+    title = f"{named} against the manufactured solution {on_screen(solution)}"
     return Study(name, title, command, every, declared)
 
 
@@ -169,7 +181,7 @@ def belongs(declared: QuantityPlan, run: Run) -> bool:
 def canonical(package: str, specification: str) -> str:
     """The specification with only the parameters that differ from their defaults, sorted: one name for one thing."""
     plugin: Any = create(package, specification)
-    values = {item.name: (getattr(plugin, item.name), item.default) for item in fields(plugin)}
+    values = {name: (getattr(plugin, item.name), item.default) for name, item in parameters_of(plugin).items()}
     changed = [
         f"{key}={str(value).removesuffix('.0')}" for key, (value, usual) in sorted(values.items()) if value != usual
     ]

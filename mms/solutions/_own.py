@@ -6,14 +6,14 @@
 
 `domain` may also name a "material" (neo_hookean if not), a "boundary": fixed, roller, free, or four of them for left,
 right, bottom, top (without it the boundary is found, see mms/edges.py), and the "order" that is expected of u.
-Arguments with a number as default, in either function, are parameters: path/to/own.py:A=0.02. The file is executed as
-a program is: run none that you do not trust.
+Arguments with a number as default, in either function, are parameters, whatever their names: path/to/own.py:A=0.02.
+The file is executed as a program is: run none that you do not trust.
 """
 
 import inspect
 import traceback
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import make_dataclass
+from dataclasses import field, make_dataclass
 from functools import cache, cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -21,7 +21,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from mpm_verify.solver.layout import CENTRED, Layout, Offset, rectangle
-from mpm_verify.solver.plugins import source
+from mpm_verify.solver.plugins import parameters_of, source
+from mpm_verify.solver.state import Floats
 
 if TYPE_CHECKING:
     import sympy as sp
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
 ARGUMENTS = {"displacement": ["X", "t"], "domain": []}
 NEEDED, OPTIONAL = {"lower", "upper", "duration", "speed"}, {"material", "boundary", "order"}
 KINDS = ("fixed", "roller", "free")
+HUGE = 1e30  # a larger number of domain() overflows on the way
+NO_NUMBERS = (str, bytes, bool, np.bool_, complex, np.complexfloating, np.ndarray)  # though float() takes some of them
 ROOM = 0.25  # of the largest displacement: how much further than the exact one a free edge may move
 
 
@@ -50,7 +53,8 @@ class Own:
 
         value = self.call("displacement", tuple(X), t)
         u = list(value) if isinstance(value, sp.MatrixBase | list | tuple) else None
-        if u is None or len(u) != 2 or not all(isinstance(e, sp.Expr | int | float) for e in u):
+        kinds = [isinstance(e, sp.Expr | int | float) and not isinstance(e, bool) for e in u or ()]
+        if u is None or len(u) != 2 or not all(kinds):
             raise ValueError(f"{self.path}: displacement must return sp.Matrix([u_x, u_y]), not {shortened(value)}")
         u = [sp.sympify(e) for e in u]
         unknown = set().union(*(e.free_symbols for e in u)) - {*X, t}
@@ -68,48 +72,57 @@ class Own:
         )
         if not isinstance(domain, dict) or not NEEDED <= set(domain) <= NEEDED | OPTIONAL:
             raise ValueError(f"{self.path}: domain returns {shortened(domain)}; {words}")
-        box = {}
-        for name in ("lower", "upper"):
-            box[name] = np.array([self.number(name, value) for value in np.atleast_1d(domain[name])])
-            if box[name].shape != (2,):
-                raise ValueError(f"{self.path}: domain has {name} = {shortened(domain[name])}; write two numbers")
+        box = {name: self.corner(name, domain[name]) for name in ("lower", "upper")}
         if not (box["upper"] > box["lower"]).all():
             raise ValueError(f"{self.path}: domain has upper = {domain['upper']}, not above lower = {domain['lower']}")
         sizes = {n: self.number(n, domain[n]) for n in ("duration", "speed", "order") if n in domain}
         for name, value in sizes.items():
             if value <= 0:
                 raise ValueError(f"{self.path}: domain has {name} = {value:g}, which must be above zero")
-        return {**domain, **box, **sizes}
+        material = domain.get("material", "neo_hookean")
+        if not isinstance(material, str) or not material:
+            raise ValueError(
+                f"{self.path}: domain has material = {shortened(material)}; write a name with its parameters, such as "
+                "'neo_hookean:E=1e4,nu=0.3'"
+            )
+        return {**domain, **box, **sizes, "material": material}
 
     def named(self) -> tuple[str, ...] | None:
         """The boundary that domain() names, one a side; None where it names none."""
         named = self.domain.get("boundary")
         if named is None:
             return None
-        sides = (named,) * 4 if isinstance(named, str) else named
-        if not isinstance(sides, tuple | list) or len(sides) != 4 or not all(kind in KINDS for kind in sides):
+        sides = tuple(named) if isinstance(named, tuple | list) else (named,) * 4
+        if len(sides) != 4 or not all(isinstance(kind, str) and kind in KINDS for kind in sides):
             choices = ", ".join(KINDS)
             raise ValueError(
                 f"{self.path}: domain has boundary = {shortened(named)}; write one of {choices}, or four of them for "
                 "left, right, bottom, top"
             )
-        return tuple(sides)
+        return sides
+
+    def corner(self, name: str, value: Any) -> Floats:
+        """A corner (2,) of domain()."""
+        several = isinstance(value, tuple | list) or (isinstance(value, np.ndarray) and value.ndim > 0)
+        if not several or len(value) != 2:
+            raise ValueError(f"{self.path}: domain has {name} = {shortened(value)}; write two numbers")
+        return np.array([self.number(name, one) for one in value])
 
     def number(self, name: str, value: Any) -> float:
-        """A finite number of domain()."""
+        """A finite number of domain(); a word that looks like one is none."""
         try:
-            number = float(value)
-        except (TypeError, ValueError):
+            number = np.nan if isinstance(value, NO_NUMBERS) else float(value)
+        except (TypeError, ValueError, OverflowError):
             number = np.nan
-        if not np.isfinite(number):
-            raise ValueError(f"{self.path}: domain has {name} = {shortened(value)}, which is no finite number")
+        if not abs(number) < HUGE:
+            raise ValueError(f"{self.path}: domain has {name} = {shortened(repr(value))}, which is no finite number")
         return number
 
     lower = property(lambda self: self.domain["lower"])
     upper = property(lambda self: self.domain["upper"])
     duration = property(lambda self: self.domain["duration"])
     C = property(lambda self: self.domain["speed"])
-    material = property(lambda self: self.domain.get("material", "neo_hookean"))
+    material = property(lambda self: self.domain["material"])
     order = property(lambda self: self.domain.get("order"))
 
     @property
@@ -153,7 +166,8 @@ class Own:
     def call(self, name: str, *arguments: Any) -> Any:
         """A function of the file, with those parameters that it has."""
         function = self.functions[name]
-        mine = {key: getattr(self, key) for key in parameters(self.path, name, function)}
+        typed = parameters_of(type(self))
+        mine = {key: getattr(self, typed[key].name) for key in parameters(self.path, name, function)}
         return guarded(self.path, lambda: function(*arguments, **mine))
 
 
@@ -172,7 +186,7 @@ def load(path: Path) -> type[Own]:
         for key, value in parameters(path, name, function).items():
             if found.setdefault(key, value) != value:
                 raise ValueError(f"{path}: {key} is {found[key]:g} in displacement and {value:g} in {name}")
-    items = [(key, float, value) for key, value in sorted(found.items())]
+    items = [(spared(key), float, field(default=v, metadata={"typed": key})) for key, v in sorted(found.items())]
     return make_dataclass("Own", items, bases=(Own,), frozen=True, namespace={"path": path, "functions": functions})
 
 
@@ -184,10 +198,17 @@ def parameters(path: Path, name: str, function: Any) -> dict[str, float]:
     if len(fixed) < count or any(p.default is not p.empty for p in fixed):
         raise ValueError(f"{path}: {name} must take ({', '.join(ARGUMENTS[name])}) and parameters with defaults")
     for p in rest:
-        if not isinstance(p.default, int | float) or hasattr(Own, p.name):
-            raise ValueError(f"{path}: {name} has the parameter {p.name}, which needs a number as default, and a name "
-                             "other than those that a solution has")  # fmt: skip
+        if isinstance(p.default, bool) or not isinstance(p.default, int | float) or not abs(p.default) < HUGE:
+            raise ValueError(
+                f"{path}: {name} has the parameter {p.name}, which needs a number as default, such as {p.name}=1.0"
+            )
     return {p.name: float(p.default) for p in rest}
+
+
+def spared(parameter: str) -> str:
+    """Name of the field of a parameter: its own, unless a solution has an attribute of that name, such as C."""
+    taken = hasattr(Own, parameter) or parameter in Own.__annotations__
+    return f"parameter_{parameter}" if taken else parameter
 
 
 def guarded(path: Path, action: Callable[[], Any]) -> Any:

@@ -9,6 +9,7 @@ from mpm_verify.cases.judging.order import Outcome
 from mpm_verify.reports.components import audited, words
 from mpm_verify.reports.components.stalls import short
 from mpm_verify.reports.frames import Record
+from mpm_verify.solver.plugins import on_screen
 
 DIVERGES = {
     Outcome.PASS: "Does not converge, as registered before the run",
@@ -62,7 +63,7 @@ def _card(record: Record, found: Finding) -> Card:
     diverges = e is not None and e.order is None
     title = f"{words.series(d)}: {words.quantity(d.quantity)} in {d.norm}"
     if len(record.solutions) > 1:
-        title += f", {d.solution}"
+        title += f", {on_screen(d.solution)}"
     facts = (
         ("Observed order", words.order(v.observed)),
         ("Interval", words.interval(v.interval)),

@@ -12,6 +12,7 @@ from mpm_verify.reports.components import words
 from mpm_verify.reports.figures.local_orders import orders
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.tables import study as tables
+from mpm_verify.solver.plugins import on_screen
 
 NAMES = {"u": "displacement u", "v": "velocity v", "F": "deformation gradient F", "sigma": "Cauchy stress"}
 Row = tuple[str, ...]
@@ -101,7 +102,7 @@ def _cells(record: Record) -> list[int]:
 
 def named(record: Record, of: Run | QuantityPlan) -> str:
     """The series, with its solution where the study has more than one."""
-    return words.series(of) + (f", {of.solution}" if len(record.solutions) > 1 else "")
+    return words.series(of) + (f", {on_screen(of.solution)}" if len(record.solutions) > 1 else "")
 
 
 def _errors(record: Record, caption: str, keys: Iterable[tuple[Series, str, str]]) -> Table:

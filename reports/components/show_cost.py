@@ -7,6 +7,7 @@ from mpm_verify.reports.figures import style
 from mpm_verify.reports.figures.convergence import methods
 from mpm_verify.reports.figures.cost import Line, Row
 from mpm_verify.reports.frames import Record
+from mpm_verify.solver.plugins import on_screen
 
 
 def figure_rows(record: Record) -> list[Row]:
@@ -19,13 +20,13 @@ def figure_rows(record: Record) -> list[Row]:
             look = style.look(methods(record), s.first.method, s.first.ppc)
             label = words.series(s.first) if several else words.method(s.first.method)
             lines.append(Line(label, s.runs, look.plot))
-        rows.append(Row(solution, lines))
+        rows.append(Row(on_screen(solution), lines))
     return rows
 
 
 def overview(record: Record) -> Table:
     """The table for a paper: a row a method, a column a solution, the last local order of u and the relative error."""
-    head = ("method", "per cell", *record.solutions)
+    head = ("method", "per cell", *map(on_screen, record.solutions))
     found = {(f.plan.method, f.plan.ppc, f.plan.solution): f for f in record.findings if _is_u(f)}
     keys = list(dict.fromkeys((s.first.method, s.first.ppc) for s in record.series))
     rows = tuple(

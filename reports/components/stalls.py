@@ -6,6 +6,7 @@ from mpm_verify.cases.harness.verdicts import STALLS, Finding
 from mpm_verify.cases.judging.stall import Stall
 from mpm_verify.reports.components import words
 from mpm_verify.reports.frames import Record
+from mpm_verify.solver.plugins import on_screen
 
 
 @dataclass(frozen=True)
@@ -41,7 +42,7 @@ def _cause(stall: Stall) -> str:
 
 
 def _told(record: Record, found: Finding, stall: Stall) -> Told:
-    title = words.series(found.plan) + (f", {found.plan.solution}" if len(record.solutions) > 1 else "")
+    title = words.series(found.plan) + (f", {on_screen(found.plan.solution)}" if len(record.solutions) > 1 else "")
     sentences = tuple(words.prose(_names(text)) for text in stall.why)
     return Told(title, words.prose(stall.where), _cause(stall), sentences)
 

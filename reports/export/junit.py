@@ -9,6 +9,7 @@ from mpm_verify.cases.harness.checks import Examination
 from mpm_verify.cases.harness.study import Study
 from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.cases.judging.records import Outcome
+from mpm_verify.solver.plugins import on_screen
 
 
 def check_junit(path: Path | None) -> None:
@@ -30,7 +31,9 @@ def write_junit(path: Path, study: Study, found: Sequence[Finding]) -> None:
     for finding in judged:
         d, v = finding.plan, finding.verdict
         name = f"{d.quantity} {d.norm}, {d.ppc} per cell"
-        case = ElementTree.SubElement(suite, "testcase", classname=f"{study.name}.{d.method}.{d.solution}", name=name)
+        case = ElementTree.SubElement(
+            suite, "testcase", classname=f"{study.name}.{d.method}.{on_screen(d.solution)}", name=name
+        )
         if v.outcome is not Outcome.PASS:
             kind = "error" if v.outcome is Outcome.ERROR else "failure"
             ElementTree.SubElement(case, kind, type=str(v.outcome), message=v.reason)

@@ -23,6 +23,7 @@ from mpm_verify.reports.figures.position import position
 from mpm_verify.reports.figures.time_step import time_step
 from mpm_verify.reports.frames import Record, read
 from mpm_verify.reports.tables import study as tables
+from mpm_verify.solver.plugins import on_screen
 
 TIME = "Error of u in rms against the Courant number on the finest cells, both axes logarithmic; numbers in the table."
 PLACE = "Error of u in rms over the median of its level, with the particles at several places; numbers in the tables."
@@ -91,10 +92,10 @@ def _solution(record: Record, solution: str, folder: Path, field: tuple[int, int
         "particles": [add(f"particles_{m}", drawn, f"{words.method(m)}: {COUNT}") for m, drawn in several.items()],
     }
     if graded.found(record):
-        alt = f"Error of u on {solution} against cost: uniform, graded and thinned layouts."
+        alt = f"Error of u on {on_screen(solution)} against cost: uniform, graded and thinned layouts."
         images["graded"] = add("graded", graded.figure(record, solution), alt)
     return images | {
-        "name": solution,
+        "name": on_screen(solution),
         "panels": [
             add(f"figure1_{norm}", drawn[f"figure1_{norm}"], _alt(record, solution, norm))
             for norm in ("rms", "printed")

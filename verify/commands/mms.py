@@ -4,7 +4,7 @@ import shlex
 import sys
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, get_args
+from typing import TYPE_CHECKING, Annotated, get_args
 
 import typer
 
@@ -12,6 +12,9 @@ from mpm_verify.solver.plugins import LAYOUTS, MATERIALS, METHODS, SOLUTIONS, TR
 from mpm_verify.solver.stress_update import Stress
 from mpm_verify.verify.options.choices import choices, completion, integers
 from mpm_verify.verify.options.common import Json
+
+if TYPE_CHECKING:
+    from mpm_verify.cases.mms.sweep import Sweep
 
 USUAL = {"cells": "8,16,32,64,128", "ppc": "1,4,9"}
 QUICK = {"cells": "8,12,16,24,32", "ppc": "4"}
@@ -114,12 +117,23 @@ def mms(
             layout,
         )
         named = replace(sweep, cells=Sweep.cells, ppc=Sweep.ppc) if label else sweep
+        if cells is None:
+            sweep = chosen(sweep)
         command = "verify " + shlex.join(repeatable(sys.argv[1:]))
         study = build(sweep, command, named.name + label)
     if (jobs is not None and jobs < 1) or threads < 1:
         raise typer.TyperException("--jobs and --threads take whole numbers from 1 on")
     folder = out or Path("results") / study.name
     return conduct(study, Settings(folder, jobs, threads, json_output, junit))
+
+
+def chosen(sweep: "Sweep") -> "Sweep":
+    """The sweep with cells that fill the body; says so where the usual ones do not."""
+    fitted = sweep.fitted
+    if fitted.cells != sweep.cells:
+        usual, cells = (",".join(map(str, one.cells)) for one in (sweep, fitted))
+        typer.echo(f"cells chosen: {cells}, which fill the body as {usual} do not; --cells takes others", err=True)
+    return fitted
 
 
 def courants(text: str) -> list[float]:

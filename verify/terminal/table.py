@@ -12,6 +12,7 @@ from mpm_verify.cases.harness.axes import middle
 from mpm_verify.cases.harness.study import QuantityPlan, Study
 from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.cases.judging.stall import Stall
+from mpm_verify.solver.plugins import on_screen
 
 STYLES = {"PASS": "bold green", "FAIL": "bold red", "INCONCLUSIVE": "bold yellow", "ERROR": "bold magenta"}
 ALWAYS = ("u", "rms")
@@ -58,7 +59,7 @@ def errors_table(found: Sequence[Finding]) -> Table:
     table.add_column("")
     for finding in found:
         for number, row in enumerate(rows(finding)):
-            solution = finding.plan.solution if number == 0 else ""
+            solution = on_screen(finding.plan.solution) if number == 0 else ""
             table.add_row(*((solution,) if several else ()), *row)
     return table
 
@@ -95,7 +96,7 @@ def sentence(finding: Finding, several: bool = False) -> Text:
 
 def named(declared: QuantityPlan, several: bool) -> str:
     """What a sentence is about, with its solution if the study has several."""
-    solution = f" on {declared.solution}" if several else ""
+    solution = f" on {on_screen(declared.solution)}" if several else ""
     return f"{declared.method}{solution}, {declared.ppc} per cell, {declared.quantity} in {declared.norm}"
 
 
