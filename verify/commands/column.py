@@ -15,13 +15,15 @@ from mpm_verify.verify.options.common import Json, Junit, Vtk
 
 
 def column(
-    method: Annotated[str, typer.Option(help=f"{choices(METHODS)}.", autocompletion=completion(METHODS))] = "cpdi",
+    method: Annotated[
+        str, typer.Option(help=f"{choices(METHODS, own=True)}.", autocompletion=completion(METHODS))
+    ] = "cpdi",
     cells: Annotated[int, typer.Option(help="Cells of the column's width; the paper prints 135.")] = 14,
     ppc: Annotated[int, typer.Option(help="Particles per cell, a square number.")] = 9,
     law: Annotated[
         str,
         typer.Option(
-            help=f"{choices(MATERIALS)}, in rate form; parameters as mohr_coulomb:phi=35.",
+            help=f"{choices(MATERIALS, own=True)}, in rate form; parameters as mohr_coulomb:phi=35.",
             autocompletion=completion(MATERIALS),
         ),
     ] = "mohr_coulomb",
@@ -30,12 +32,12 @@ def column(
     smoothing: Annotated[
         str,
         typer.Option(
-            help=f"none, {choices(SMOOTHINGS)}; parameters as deviatoric:of=rate,where=node.",
+            help=f"none, {choices(SMOOTHINGS, own=True)}; parameters as deviatoric:of=rate,where=node.",
             autocompletion=completion(SMOOTHINGS),
         ),
     ] = "none",
     transfer: Annotated[
-        str, typer.Option(help=f"{choices(TRANSFERS)}.", autocompletion=completion(TRANSFERS))
+        str, typer.Option(help=f"{choices(TRANSFERS, own=True)}.", autocompletion=completion(TRANSFERS))
     ] = "flip",
     deformation: Annotated[str, typer.Option(help="Update of F: exponential, or linear as printed.")] = "exponential",
     limit: Annotated[float, typer.Option(help="Longest half diagonal of a CPDI domain, in cells; inf for none.")] = 0.5,

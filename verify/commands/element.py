@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from mpm_verify.solver.plugins import MATERIALS
+from mpm_verify.solver.plugins import MATERIALS, label
 from mpm_verify.verify.options.choices import choices, completion
 from mpm_verify.verify.options.common import Json, Junit
 
@@ -22,7 +22,7 @@ def material(
         str,
         typer.Argument(
             metavar="NAME",
-            help=f"{choices(MATERIALS)}, with parameters as mohr_coulomb:phi=35,psi=5.",
+            help=f"{choices(MATERIALS, own=True)}, with parameters as mohr_coulomb:phi=35,psi=5.",
             autocompletion=completion(MATERIALS),
         ),
     ],
@@ -64,7 +64,7 @@ def material(
         from mpm_verify.verify.examine import conduct
 
     command = "verify " + shlex.join(sys.argv[1:])
-    folder = out or Path("results") / f"material-{name.replace(':', '-').replace(',', '-')}"
+    folder = out or Path("results") / f"material-{label(name).replace(':', '-').replace(',', '-').replace('/', '-')}"
     return conduct(lambda: examine(name, law, tests, confined, steps, command), page, folder, json_output, junit)
 
 

@@ -21,13 +21,15 @@ def mms(
     method: Annotated[
         list[str] | None,
         typer.Option(
-            help=f"{choices(METHODS)}; may be repeated.", autocompletion=completion(METHODS), show_default="cpdi"
+            help=f"{choices(METHODS, own=True)}; may be repeated.",
+            autocompletion=completion(METHODS),
+            show_default="cpdi",
         ),
     ] = None,
     solution: Annotated[
         str,
         typer.Option(
-            help=f"{choices(SOLUTIONS)}; or a file of your own; parameters as axis_aligned:A=0.01,phase=0.5.",
+            help=f"{choices(SOLUTIONS, own=True)}; parameters as axis_aligned:A=0.01,phase=0.5.",
             autocompletion=completion(SOLUTIONS),
         ),
     ] = "axis_aligned",
@@ -40,7 +42,7 @@ def mms(
     material: Annotated[
         str,
         typer.Option(
-            help=f"{choices(MATERIALS)}; parameters as neo_hookean:nu=0.2.",
+            help=f"{choices(MATERIALS, own=True)}; parameters as neo_hookean:nu=0.2.",
             autocompletion=completion(MATERIALS),
             show_default="the solution's own",
         ),
@@ -61,7 +63,7 @@ def mms(
     transfer: Annotated[
         str,
         typer.Option(
-            help=f"{choices(TRANSFERS)}; parameters as flip:share=0.95 or fmpm:order=3.",
+            help=f"{choices(TRANSFERS, own=True)}; parameters as flip:share=0.95 or fmpm:order=3.",
             autocompletion=completion(TRANSFERS),
         ),
     ] = "flip",
@@ -75,7 +77,7 @@ def mms(
     layout: Annotated[
         str,
         typer.Option(
-            help=f"{choices(LAYOUTS)}: how particles are spread; parameters as graded:contrast=3,power=0.5.",
+            help=f"How particles are spread: {choices(LAYOUTS, own=True)}; parameters as graded:contrast=3,power=0.5.",
             autocompletion=completion(LAYOUTS),
         ),
     ] = "uniform",
