@@ -17,6 +17,12 @@ from mpm_verify.solver.state import Floats
 SIDES = ("left", "right", "bottom", "top")  # side // 2 is the axis of the normal, side % 2 lower or upper
 PLACES = 65  # along a side
 ROUND = 1e-9  # of the largest displacement or stress: above round-off, below what could be meant
+ROUNDED = 5e-3  # of the same: 3.14 for pi misses by less
+NEEDS = {
+    "fixed": ("normal displacement", "tangential displacement"),
+    "roller": ("normal displacement", "tangential traction"),
+    "free": ("normal traction", "tangential traction"),
+}
 
 
 @dataclass(frozen=True)
@@ -33,24 +39,25 @@ class Peak:
 
 @dataclass(frozen=True)
 class Side:
-    """Largest displacement across and along a side, largest traction across and along."""
+    """Largest normal and tangential displacement, largest normal and tangential traction."""
 
     name: str
-    across: Peak
-    along: Peak
-    pull: Peak
-    shear: Peak
+    normal: Peak
+    tangential: Peak
+    normal_traction: Peak
+    tangential_traction: Peak
 
 
 @dataclass(frozen=True)
 class Edges:
-    """The four sides; `reach` is the largest displacement in the body.
+    """The four sides; `reach` is the largest displacement in the body, `motion` the largest component of one.
 
     `move` and `stress` are sizes below which a displacement and a traction are round-off.
     """
 
     sides: tuple[Side, ...]
     reach: float
+    motion: float
     move: float
     stress: float
 
@@ -59,13 +66,27 @@ class Edges:
         """The first that holds, one a side; "" where it is nothing that the solver has."""
         return tuple((*self.possible(side), "")[0] for side in self.sides)
 
+    def misses(self, side: Side) -> dict[str, tuple[float, Peak]]:
+        """Each displacement and traction of the side as a fraction of the body's largest, and its peak."""
+        motion, stress = self.motion or 1.0, self.stress / ROUND
+        return {
+            "normal displacement": (side.normal.value / motion, side.normal),
+            "tangential displacement": (side.tangential.value / motion, side.tangential),
+            "normal traction": (side.normal_traction.value / stress, side.normal_traction),
+            "tangential traction": (side.tangential_traction.value / stress, side.tangential_traction),
+        }
+
+    def miss(self, side: Side, kind: str) -> tuple[float, str]:
+        """By how much the side is not of the kind, as a fraction of the body's largest, and in what."""
+        return max((self.misses(side)[need][0], need) for need in NEEDS[kind])
+
     def possible(self, side: Side) -> tuple[str, ...]:
         """What holds on the side; fixed before roller before free."""
-        still, no_shear = side.across.value <= self.move, side.shear.value <= self.stress
+        still, no_shear = side.normal.value <= self.move, side.tangential_traction.value <= self.stress
         holds = {
-            "fixed": still and side.along.value <= self.move,
+            "fixed": still and side.tangential.value <= self.move,
             "roller": still and no_shear,
-            "free": no_shear and side.pull.value <= self.stress,
+            "free": no_shear and side.normal_traction.value <= self.stress,
         }
         return tuple(kind for kind, true in holds.items() if true)
 
@@ -73,12 +94,37 @@ class Edges:
         """One sentence on the first side that cannot be of the kind it is meant to be; empty where all can."""
         for side, kind in zip(self.sides, kinds, strict=True):
             if kind not in self.possible(side):
-                meant = f"cannot be {kind}" if kind else "is neither fixed nor roller nor free"
-                return (
-                    f"the {side.name} edge {meant}: u across it {side.across}; u along it {side.along}; "
-                    f"traction across it {side.pull}; traction along it {side.shear}"
-                )
+                return self.refusal(side, kind)
         return ""
+
+    def refusal(self, side: Side, kind: str) -> str:
+        """How far the side is from the kind it is meant to be, or "" from any, what that looks like, what to write."""
+        meant = kind or min(NEEDS, key=lambda kind: self.miss(side, kind)[0])
+        fraction, quantity = self.miss(side, meant)
+        if fraction <= ROUNDED:
+            return (
+                f"the {side.name} edge is not quite {meant}: its {self.told(side, quantity)}. That looks like a "
+                "rounded constant, such as 3.14 for pi: write sp.pi, sp.Rational(1, 3), sp.sqrt(2)"
+            )
+        if kind:
+            holds = self.possible(side)
+            instead = f'it is {holds[0]}: write that, or leave "boundary" out' if holds else "nor is it of another kind"
+            return f"the {side.name} edge cannot be {kind}: its {self.told(side, quantity)}; {instead}"
+        both = [
+            max((f"{part} {what}" for part in ("normal", "tangential")), key=lambda name: self.misses(side)[name][0])
+            for what in ("displacement", "traction")
+        ]
+        return (
+            f"the {side.name} edge is neither fixed nor roller nor free: its {self.told(side, both[0])}; its "
+            f"{self.told(side, both[1])}. An edge that moves and is pulled is not supported yet: let u or the traction "
+            "vanish there"
+        )
+
+    def told(self, side: Side, quantity: str) -> str:
+        """The quantity with its peak, and as a fraction."""
+        fraction, peak = self.misses(side)[quantity]
+        of = "motion" if "displacement" in quantity else "stress"
+        return f"{quantity} is {peak}, {fraction:.1g} of the largest {of}"
 
 
 def examine(solution: Any, exact: Manufactured, law: Law) -> Edges:
@@ -94,7 +140,8 @@ def examine(solution: Any, exact: Manufactured, law: Law) -> Edges:
         reach = max(reach, float(np.hypot(s.u[..., 0], s.u[..., 1]).max()))
         quantities = (s.u[..., axis], s.u[..., 1 - axis], s.P[..., axis, axis], s.P[..., 1 - axis, axis])
         sides.append(Side(name, *(peak(values, X, times) for values in quantities)))
-    return Edges(tuple(sides), reach, ROUND * reach, ROUND * max(largest(body.P), least_stress(law)))
+    motion = max(largest(body.u), *(peak.value for side in sides for peak in (side.normal, side.tangential)))
+    return Edges(tuple(sides), reach, motion, ROUND * reach, ROUND * max(largest(body.P), least_stress(law)))
 
 
 def peak(values: Floats, X: Floats, times: Floats) -> Peak:

@@ -1,7 +1,7 @@
 """The exact fields as a kernel: one call gives u, v, F, sigma and b for a block of particles.
 
 Written out as Python source from the hoisted expressions, and compiled by the same kernel() as the solver. The source
-file stands beside the kernel cache, named by its content.
+file stands in the kernel cache, with what it is compiled to, named by its content.
 """
 
 import hashlib
@@ -18,7 +18,8 @@ from sympy.printing.pycode import PythonCodePrinter
 
 from mpm_verify.mms.derive import Fields
 from mpm_verify.mms.hoist import Hoist
-from mpm_verify.solver._jit import CACHE, F1, function_type, i8, nothing
+from mpm_verify.solver._jit import F1, function_type, i8, kept_in, nothing
+from mpm_verify.solver.source_hash import source_hash
 from mpm_verify.solver.state import Floats
 
 EXACT = nothing(F1, F1, i8, F1)  # columns[C*b + c], scalars[s], particles in the block, out[row*BLOCK + b]
@@ -128,8 +129,9 @@ def _statements(inner: dict[sp.Symbol, sp.Expr], targets: list[tuple[str, sp.Exp
 
 def _load(source: str) -> Any:
     """Import the source from its file; written once, whole or not at all."""
-    name = f"exact_{hashlib.sha256(source.encode()).hexdigest()[:16]}"
-    path = CACHE / f"{name}.py"
+    content = hashlib.sha256(source.encode()).hexdigest()
+    name = f"exact_{content[:16]}"
+    path = kept_in("exact", content, source_hash("mpm_verify.mms.exact")) / f"{name}.py"
     if not path.exists():
         temporary = path.with_suffix(f".{os.getpid()}")
         temporary.write_text(source)

@@ -9,8 +9,8 @@ from typing import Any
 from mpm_verify.cases.harness.analysis import Analysis, analyse
 from mpm_verify.cases.harness.axes import level, middle, replicated
 from mpm_verify.cases.harness.refinement import Series, collect
-from mpm_verify.cases.harness.store import Arrays, Store, case_of
-from mpm_verify.cases.harness.study import QuantityPlan, ResultRecord, Study
+from mpm_verify.cases.harness.store import Store, case_of
+from mpm_verify.cases.harness.study import Arrays, QuantityPlan, ResultRecord, Study
 from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.reports import words
 from mpm_verify.solver.failure import FailureKind
@@ -153,3 +153,12 @@ def joined(*parts: Mapping[str, Any]) -> dict[str, Any]:
             raise ValueError(f"two columns of a table have the name {sorted(both)[0]!r}")
         row |= part
     return row
+
+
+def flat(values: Mapping[str, Any]) -> dict[str, Any]:
+    """The same with a pair as two columns, NAME_x and NAME_y."""
+    found: dict[str, Any] = {}
+    for name, value in values.items():
+        pair = isinstance(value, tuple)
+        found |= dict(zip((f"{name}_x", f"{name}_y"), value, strict=True)) if pair else {name: value}
+    return found

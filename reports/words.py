@@ -4,6 +4,7 @@ import math
 from typing import Any
 
 from mpm_verify.cases.mms.run import Run
+from mpm_verify.solver.plugins import label
 
 METHODS = {
     "mpm": "MPM",
@@ -26,7 +27,7 @@ DASH, MINUS, TIMES = "\N{EN DASH}", "\N{MINUS SIGN}", "\N{MULTIPLICATION SIGN}"
 
 def method(name: str) -> str:
     """The name of a method as people write it; the command's word where nothing else is known."""
-    return METHODS.get(name, name.replace("_", " "))
+    return METHODS.get(name, label(name).replace("_", " "))
 
 
 def quantity(name: str) -> str:

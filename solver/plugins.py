@@ -1,18 +1,19 @@
 """A plug-in is a file: its name is the word on the command line, and the class in it has that name in CamelCase.
 
-A package with a module `_own` takes the path of a user's file too: `_own.load(path)` makes a class of it.
+Any plug-in but a case may be a user's file, path/to/own.py or path/to/own.py:key=value. A package with a module `_own`
+makes a class of it in its own way, `_own.load(path)`; of the others the file holds the class.
 """
 
-import hashlib
 import re
-from dataclasses import fields
-from functools import cache
+from collections.abc import Sequence
+from dataclasses import Field, fields, is_dataclass
 from importlib import import_module
 from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from mpm_verify.solver.sources import TOP
+from mpm_verify.solver.own_file import module_of
+from mpm_verify.solver.source_hash import TOP, find
 
 METHODS, MATERIALS, SOLUTIONS, CASES = (
     "mpm_verify.solver.basis",
@@ -35,6 +36,18 @@ KINDS = {
     NEGATIVE_CONTROLS: "negative control",
     SMOOTHINGS: "smoothing",
 }
+USUAL_RATE = "green_naghdi"  # of a constitutive model in rate form
+FILE = r"(.+?\.py)(?::(\w+=.*|[^/\\]*))?"  # a path and parameters
+CONTRACTS = {  # what the class of a kind has at least
+    METHODS: ("support", "order", "fill"),
+    MATERIALS: ("start", "update", "wave_speed"),
+    SOLUTIONS: ("displacement", "boundary", "lower", "upper", "duration", "C", "margin", "material", "layout"),
+    TRANSFERS: ("share", "start", "give", "filter", "take"),
+    LAYOUTS: ("check", "__call__"),
+    RATES: ("unrotate", "rotate", "order"),
+    NEGATIVE_CONTROLS: ("unrotate", "rotate", "order"),
+    SMOOTHINGS: ("of", "where", "stress", "strain", "check"),
+}
 
 
 def available(package: str) -> list[str]:
@@ -56,13 +69,37 @@ def path(package: str, name: str) -> Path:
 
 def load(package: str, name: str) -> Any:
     """The class of plug-in `name`, or of a user's file. Raises ValueError that lists the choices if there is none."""
-    own = (folder(package) / "_own.py").exists()
-    if own and is_file(name):
-        return import_module(f"{package}._own").load(Path(name))
+    if is_file(name) and package in CONTRACTS:
+        own = find(f"{package}._own")
+        return import_module(f"{package}._own").load(Path(name)) if own else own_class(package, Path(name))
     if name not in available(package):
-        choices = ", ".join(available(package)) + (", or give a file: path/to/own.py" if own else "")
+        choices = ", ".join(available(package)) + (", or give a file: path/to/own.py" if package in CONTRACTS else "")
         raise ValueError(f"no {KINDS.get(package, 'plug-in')} {name!r}; choose from {choices}")
     return getattr(import_module(f"{package}.{name}"), camel(name))
+
+
+def own_class(package: str, path: Path) -> Any:
+    """The class of a user's file: the one named as the file, or else the only one that keeps the contract.
+
+    Raises ValueError that says what is missing.
+    """
+    module, contract = module_of(path), CONTRACTS[package]
+    found = [c for c in vars(module).values() if isinstance(c, type) and c.__module__ == module.__name__]
+    named = [c for c in found if c.__name__ == camel(path.stem)]
+    chosen = named or [c for c in found if not lacking(c, contract)]
+    kind = f"a {KINDS[package]} has {', '.join(contract)}"
+    if len(chosen) != 1:
+        several = f"the classes {', '.join(c.__name__ for c in chosen)}: name one {camel(path.stem)}"
+        raise ValueError(f"{path} has {several if chosen else f'no class {camel(path.stem)}'}; {kind}")
+    if missing := lacking(chosen[0], contract):
+        raise ValueError(f"{path}: the class {chosen[0].__name__} has no {', no '.join(missing)}; {kind}")
+    return chosen[0]
+
+
+def lacking(plugin: type, contract: Sequence[str]) -> list[str]:
+    """What a class has not of what its kind asks for: neither itself nor as a field."""
+    known = {item.name for item in fields(plugin)} if is_dataclass(plugin) else set()
+    return [name for name in contract if not hasattr(plugin, name) and name not in known]
 
 
 def is_file(specification: str) -> bool:
@@ -71,43 +108,24 @@ def is_file(specification: str) -> bool:
 
 
 def split(specification: str) -> tuple[str, str]:
-    """Name and parameters of `name:key=value`; a path may have colons of its own."""
-    path = re.fullmatch(r"(.+\.py)(?::([^/\\]*))?", specification)
-    if path:
-        return path[1], path[2] or ""
+    """Name and parameters of `name:key=value`; a path may have colons of its own, and a parameter may be a path."""
+    file = None if re.match(r"\w+:\w+=", specification) else re.fullmatch(FILE, specification)
+    if file:
+        return file[1], file[2] or ""
     name, _, rest = specification.partition(":")
     return name, rest
+
+
+def label(specification: str) -> str:
+    """The specification with a user's file by its stem, for people."""
+    name, rest = split(specification)
+    return ":".join(filter(None, [Path(name).stem, rest])) if is_file(name) else specification
 
 
 def absolute(specification: str) -> str:
     """The specification with a user's file by its whole path, so that it means the same in another folder."""
     name, rest = split(specification)
     return ":".join(filter(None, [str(Path(name).resolve()), rest])) if is_file(name) else specification
-
-
-@cache
-def source(path: Path) -> str:
-    """Text of a user's file, read once a process: what is hashed is what is run. Raises ValueError."""
-    try:
-        return path.read_text(encoding="utf-8")
-    except OSError as error:
-        raise ValueError(f"{path}: {(error.strerror or str(error)).lower()}") from None
-    except UnicodeDecodeError:
-        raise ValueError(f"{path} is no text") from None
-
-
-def identity(specification: str) -> str:
-    """What a specification stands for: a user's file by its content, wherever it is; anything else by its words.
-
-    A file that cannot be read any more has an identity that no other has.
-    """
-    name, rest = split(specification)
-    if not is_file(name):
-        return specification
-    try:
-        return f"{hashlib.sha256(source(Path(name)).encode()).hexdigest()}:{rest}"
-    except ValueError:
-        return f"unreadable {specification}"
 
 
 def camel(name: str) -> str:
@@ -122,22 +140,29 @@ def create(package: str, specification: str) -> Any:
     """
     name, rest = split(specification)
     plugin = load(package, name)
-    allowed = {item.name: item.type for item in fields(plugin)}
-    parameters: dict[str, float | str] = {}
+    allowed = parameters_of(plugin)
+    given: dict[str, float | str] = {}
     for item in filter(None, rest.split(",")):
         key, _, value = item.partition("=")
         if key not in allowed:
             raise ValueError(f"{name} has no parameter {key!r}; it has {', '.join(allowed) or 'none'}")
-        if key in parameters:
+        field = allowed[key]
+        if field.name in given:
             raise ValueError(f"{name}: {key} is given twice")
-        parameters[key] = number(name, key, value) if allowed[key] in (float, "float") else value
-    return plugin(**parameters)
+        given[field.name] = number(name, key, value) if field.type in (float, "float") else absolute(value)
+    return plugin(**given)
+
+
+def parameters_of(plugin: Any) -> "dict[str, Field[Any]]":
+    """Fields of a plug-in by the name that a user types: a field may bear another, so that it hides no attribute."""
+    known = fields(plugin) if is_dataclass(plugin) else ()
+    return {item.metadata.get("typed", item.name): item for item in known}
 
 
 def canonical(package: str, specification: str) -> str:
     """The specification with only the parameters that differ from their defaults, sorted: one name for one thing."""
     plugin: Any = create(package, specification)
-    values = {item.name: (getattr(plugin, item.name), item.default) for item in fields(plugin)}
+    values = {name: (getattr(plugin, item.name), item.default) for name, item in parameters_of(plugin).items()}
     changed = [
         f"{key}={str(value).removesuffix('.0')}" for key, (value, usual) in sorted(values.items()) if value != usual
     ]

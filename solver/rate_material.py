@@ -9,7 +9,7 @@ import numpy as np
 from mpm_verify.solver._jit import Function
 from mpm_verify.solver.material_model import Material
 from mpm_verify.solver.objective import Rate, integrate
-from mpm_verify.solver.plugins import NEGATIVE_CONTROLS, RATES, available, load
+from mpm_verify.solver.plugins import NEGATIVE_CONTROLS, RATES, USUAL_RATE, available, load
 from mpm_verify.solver.state import Floats, Particles
 
 
@@ -22,7 +22,7 @@ class RateMaterial(Material):
     taken as a rate too: they are there to be seen failing.
     """
 
-    rate: str = "green_naghdi"
+    rate: str = USUAL_RATE
     respond: ClassVar[Function]
 
     def __post_init__(self) -> None:

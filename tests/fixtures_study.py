@@ -6,12 +6,13 @@ from unittest.mock import patch
 
 import numpy as np
 
+from mpm_verify.cases.harness import identity
 from mpm_verify.cases.harness.store import Arrays, Store
-from mpm_verify.cases.harness.study import Failure, QuantityPlan, Study
+from mpm_verify.cases.harness.study import QuantityPlan, Study
 from mpm_verify.cases.judging.order import Expectation
-from mpm_verify.cases.mms import run as contract
 from mpm_verify.cases.mms.run import NORMS, QUANTITIES, Result, Run
 from mpm_verify.mms.blind_spots import ALWAYS, BlindSpot, SpotCode
+from mpm_verify.solver.failure import Failure, FailureKind
 
 CELLS = (8, 16, 32, 64, 128)
 U_RMS: dict[tuple[str, int], tuple[float, ...]] = {  # the runs behind the last number failed
@@ -46,11 +47,13 @@ def make(folder: Path, methods: tuple[str, ...] = ("cpdi", "mpm"), skip: int = 0
 
     Arrays are stored for grids up to `largest` cells. Digests do not depend on the sources of the solver.
     """
-    with patch.object(contract, "sources_digest", _no_sources):
+    with patch.object(identity, "sources", _no_sources):
         runs = [Run(m, "axis_aligned", "neo_hookean", n, p, 0.4) for m, p in U_RMS if m in methods for n in CELLS]
         runs += [Run(m, "axis_aligned", "neo_hookean", 128, p, 0.2) for m in methods for p in HALF_PPC if m == "cpdi"]
         command = "verify mms " + " ".join(f"--method {m}" for m in methods)
-        study = Study("mms", "Manufactured solution: axis_aligned", command, tuple(runs), _declared(methods))
+        study = Study(
+            "mms", "Manufactured solution: axis_aligned", command, tuple(runs), _declared(methods), case="mms"
+        )
         store = Store(folder)
         store.create(study)
         for run in runs[: len(runs) - skip]:
@@ -60,10 +63,10 @@ def make(folder: Path, methods: tuple[str, ...] = ("cpdi", "mpm"), skip: int = 0
 
 def sources() -> AbstractContextManager[object]:
     """A context in which digests are those of `make`: render inside it."""
-    return patch.object(contract, "sources_digest", _no_sources)
+    return patch.object(identity, "sources", _no_sources)
 
 
-def _no_sources() -> str:
+def _no_sources(*_: object) -> str:
     return "synthetic"
 
 
@@ -75,9 +78,8 @@ def _declared(methods: tuple[str, ...]) -> tuple[QuantityPlan, ...]:
                 judged = quantity == "u" and norm == "rms" and ppc in HALF_PPC
                 expected = {"cpdi": SECOND if ppc == 4 else Expectation(2.0, source=SECOND.source), "mpm": NONE}[method]
                 known = quantity == "u" and norm == "rms"
-                found.append(
-                    QuantityPlan(method, "axis_aligned", ppc, quantity, norm, judged, expected if known else None)
-                )
+                run = Run(method, "axis_aligned", "neo_hookean", CELLS[0], ppc, 0.4)
+                found.append(QuantityPlan(run, quantity, norm, judged, expected if known else None))
     return tuple(found)
 
 
@@ -86,7 +88,9 @@ def _result(run: Run) -> Result:
     level = CELLS.index(run.cells)
     particles, steps = run.ppc * run.cells**2, round(2 * run.cells / run.courant)
     lost = level >= len(known)
-    failure = Failure("det F <= 0", steps // 3, 7 * run.cells, (run.cells // 4, run.cells // 2)) if lost else None
+    failure = (
+        Failure(FailureKind.INVERTED, steps // 3, 7 * run.cells, (run.cells // 4, run.cells // 2)) if lost else None
+    )
     rms = 0.0 if lost else known[level] * (1.004 if run.courant < 0.4 else 1.0)
     errors = {} if lost else {q: _norms(rms * SIZE[q], steps * particles) for q in QUANTITIES}
     return Result(

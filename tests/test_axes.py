@@ -18,7 +18,7 @@ from mpm_verify.cases.harness.axes import crossed, level, middle, particle_axes,
 from mpm_verify.cases.harness.refinement import MOST, collect, offsets
 from mpm_verify.cases.harness.runner import InProcess, pending, run_study
 from mpm_verify.cases.harness.store import Store
-from mpm_verify.cases.harness.study import Failure, QuantityPlan, Study
+from mpm_verify.cases.harness.study import QuantityPlan, Study
 from mpm_verify.cases.harness.verdicts import findings, refinement
 from mpm_verify.cases.judging.order import Expectation, Outcome
 from mpm_verify.cases.mms.run import NORMS, QUANTITIES, Result, Run
@@ -27,6 +27,7 @@ from mpm_verify.reports.export.document import SCHEMA
 from mpm_verify.reports.figures.style import look
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.pages.mms import render
+from mpm_verify.solver.failure import Failure, FailureKind
 from mpm_verify.verify.main import main
 
 BASE = Run("cpdi", "axis_aligned", "neo_hookean", 8, 4, 0.4)
@@ -55,7 +56,7 @@ def same(error: float) -> dict[str, dict[str, float]]:
 
 
 def lost(run: Run, step: int) -> Result:
-    return replace(result(run, 1.0), status="failed", errors={}, failure=Failure("det F <= 0", step))
+    return replace(result(run, 1.0), status="failed", errors={}, failure=Failure(FailureKind.INVERTED, step))
 
 
 # ---- the runs of the study

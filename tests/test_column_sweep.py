@@ -9,7 +9,7 @@ from mpm_verify.cases.column.sweep import read
 
 from mpm_verify.cases.column.run import ColumnRun
 from mpm_verify.cases.harness.shipped import shipped
-from mpm_verify.solver.sources import TOP
+from mpm_verify.solver.source_hash import TOP
 
 FIGURES = {f"figure{number}" for number in range(3, 9)}
 

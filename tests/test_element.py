@@ -144,17 +144,29 @@ def test_a_path_from_a_file(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("", "must have a header with exx, eyy and exy"),
-        ("exx,eyy\n0,0\n1,1\n", "must have a header with exx, eyy and exy"),
-        ("exx,eyy,exy\n", "must have a header"),
+        ("", "must have a header with exx, eyy, and exy or gxy"),
+        ("# only\n\n", "must have a header with exx, eyy, and exy or gxy"),
+        ("exx,eyy\n0,0\n1,1\n", "must have a header with .* its first line has exx, eyy"),
+        ("0,0,0\n0,1,0\n", "its first line has 0, 0, 0"),
+        ("exx,ezz,gxz\n0,0,0\n", "its first line has exx, ezz, gxz"),
+        ("exx,eyy,exy\n", "must have two rows"),
         ("exx,eyy,exy\n0,0,0\n", "must have two rows"),
         ("exx,eyy,exy\n0,0,0\n0,0,0\n", "must have strains that change"),
-        ("exx,eyy,exy\n0,0,0\n0.1,soft,0\n", "line 3: eyy = 'soft' must be a number"),
-        ("exx,eyy,exy\n0,0,0\n0.1,,0\n", "line 3: eyy = '' must be a number"),
-        ("exx,eyy,exy\n0,0,0\n0.1,nan,0\n", "line 3: eyy = nan must be finite"),
-        ("exx,eyy,exy\n0,0,0\n0.1,inf,0\n", "line 3: eyy = inf must be finite"),
-        ("exx,eyy,exy\n0,0,0\n0.1,50,0\n", "line 3: eyy = 50.0 must be"),
-        (b"exx,eyy,exy\n\xff\xfe\n", "is no CSV text"),
+        ("exx,eyy,exy\n0,0,0\n0.1,soft,0\n", "line 3: eyy = 'soft' must be a finite number"),
+        ("exx,eyy,exy\n0,0,0\n0.1,1_0,0\n", "line 3: eyy = '1_0' must be a finite number"),
+        ("exx,eyy,exy\n0,0,0\n0.1,,0\n", "line 3: eyy is empty"),
+        ("exx,eyy,exy\n0,0,0\n0.1,nan,0\n", "line 3: eyy = 'nan' must be a finite number"),
+        ("exx,eyy,exy\n0,0,0\n0.1,inf,0\n", "line 3: eyy = 'inf' must be a finite number"),
+        ("exx,eyy,exy\n0,0,0\n0.1,0\n", "line 3: 2 cells, and the header has 3"),
+        ("exx,eyy,exy\n0,0,0\n0,0,01,0\n", "line 3: 4 cells, .* semicolons must separate"),
+        ("exx,exx,eyy,exy\n0,0,0,0\n0.1,0,0,0\n", "two columns exx"),
+        ("exx,EXX,eyy,exy\n0,0,0,0\n0.1,0,0,0\n", "two columns exx"),
+        ("exx,eyy,exy,gxy\n0,0,0,0\n0.1,0,0,0\n", "both exy and gxy"),
+        ("exx [%],eyy,exy\n0,0,0\n0.1,0,0\n", r"eyy has no unit; write eyy \[%\] or \[-\]"),
+        ("exx [1e-6],eyy,exy\n0,0,0\n0.1,0,0\n", r"exx is in 1e-6; strains are taken in \[%\]"),
+        (b"exx,eyy,exy\n\xff\xfe\n", "is no CSV text in UTF-8"),
+        ("exx,eyy,exy\n0,0,0\n0.1,0,0\n".encode("utf-16"), "UTF-16 text .* save it as CSV in UTF-8"),
+        ("exx,eyy,exy\n0,0,0\n0.1,0,0\n".encode("utf-16-le"), "UTF-16 text"),
     ],
 )
 def test_a_bad_path_is_one_line(text: str | bytes, words: str, tmp_path: Path) -> None:
@@ -163,3 +175,76 @@ def test_a_bad_path_is_one_line(text: str | bytes, words: str, tmp_path: Path) -
     assert "\n" not in str(told.value)
     with pytest.raises(ValueError, match="no such file"):
         from_file(tmp_path / "none.csv")
+
+
+@pytest.mark.parametrize(
+    "name", ["ezz", "exz", "gyz", "EZZ", "eyx", "gyx", "e33", "eps_zz", "gamma_xz", "ez", "\u03b5zz [%]"]
+)
+def test_a_strain_that_would_not_be_used_is_refused(name: str, tmp_path: Path) -> None:
+    """The line says what is taken, and what plane strain has."""
+    text = f"time,exx,eyy,{name},gxy\n0,0,0,0,0\n1,0.003,-0.01,0.003,0\n"
+    with pytest.raises(ValueError, match=r"taken are exx, eyy, and exy or gxy .* plane strain has ezz = 0") as told:
+        from_file(write(tmp_path, text))
+    assert name.partition(" ")[0].lower() in str(told.value)
+
+
+@pytest.mark.parametrize("name", ["ezz", "exz", "gyz", "eps_33"])
+def test_a_strain_out_of_the_plane_that_is_zero_is_taken(name: str, tmp_path: Path) -> None:
+    test = from_file(write(tmp_path, f"exx,eyy,{name},gxy\n0,0,0,0\n0.003,-0.01,0.0,0\n"))
+    assert test.source is not None
+    assert (test.source.zero, test.source.unused) == ((name,), ())
+    np.testing.assert_array_equal(test.points, [[0, 0, 0], [0.003, -0.01, 0]])
+
+
+def test_other_columns_are_named(tmp_path: Path) -> None:
+    """By name, or by number where they have none; a column without name and content is nobody's."""
+    test = from_file(write(tmp_path, ",time,exx,eyy,gxy,note,\n0,0,0,0,0,,\n1,1,0.003,-0.01,0,end,\n"))
+    assert test.source is not None
+    assert test.source.unused == ("column 1 without a name", "time", "note")
+
+
+SAME = {
+    "byte order mark": "\ufeffexx,eyy,gxy\n0,0,0\n0.002,-0.01,0.004\n",
+    "tabs": "time\texx\teyy\tgxy\n0\t0\t0\t0\n1\t0.002\t-0.01\t0.004\n",
+    "semicolons": "exx;eyy;gxy\n0;0;0\n0.002;-0.01;0.004\n",
+    "decimal commas": "sep=;\nexx;eyy;gxy\n0;0;0\n0,002;-0,01;4,0e-3\n",
+    "tabs and decimal commas": "exx\teyy\tgxy\n0\t0\t0\n0,002\t-0,01\t0,004\n",
+    "quotes": '"exx","eyy","gxy"\n"0","0","0"\n"0,002","-0,01","0.004"\n',
+    "spaces": "  exx   eyy gxy\n 0 0  0\n0.002  -1e-2 4.0D-3\n",
+    "comments": "# a path\n\nexx,eyy,gxy # fractions\n0,0,0\n# turns\n\n0.002,-0.01,0.004 # end\n,,\n",
+    "header in a comment": "# exx eyy gxy\n0 0 0\n2.0e-03 -1.0e-02 4.0e-03\n",
+    "line ends": "exx,eyy,gxy\r\n0,0,0\r\n0.002,-0.01,0.004\r\n",
+    "old line ends": "exx,eyy,gxy\r0,0,0\r0.002,-0.01,0.004\r",
+    "upper case": " EXX , Eyy ,GXY\n0, 0, 0\n 0.002 , \u22120.01,0.004\n",
+    "per cent": "exx [%],eyy [%],gxy [%]\n0,0,0\n0.2,-1.0,0.4\n",
+    "per cent by name": "exx_pct;eyy (percent);gxy in %\n0;0;0\n0,2;-1,0;0,4\n",
+    "per cent and spaces": "exx [%] eyy [%] gxy [-]\n0 0 0\n0.2 -1.0 0.004\n",
+    "per cent in the cells": "exx,eyy,gxy\n0,0,0\n0.2 %,-1%,0.4%\n",
+    "fractions by name": "exx [-],eyy [m/m],gxy [1]\n0,0,0\n0.002,-0.01,0.004\n",
+}
+
+
+@pytest.mark.parametrize("kind", SAME)
+def test_one_path_in_many_hands(kind: str, tmp_path: Path) -> None:
+    test = from_file(write(tmp_path, SAME[kind]))
+    np.testing.assert_allclose(test.points, [[0, 0, 0], [0.002, -0.01, 0.002]], rtol=1e-15)
+
+
+def test_strains_that_may_be_percentages(tmp_path: Path) -> None:
+    """A question with what to type; each answer is taken, up to what a strain can be; a contradiction is not."""
+    path = write(tmp_path, "exx,eyy,gxy\n0,0,0\n0,-1.0,0\n0,-5.0,0\n")
+    with pytest.raises(ValueError, match=r"line 3: eyy = -1.0 .* in per cent\? .*--units percent; .*--units fraction"):
+        from_file(path)
+    np.testing.assert_allclose(from_file(path, "percent").points[:, 1], [0, -0.01, -0.05])
+    np.testing.assert_allclose(from_file(path, "fraction").points[:, 1], [0, -1, -5])
+    with pytest.raises(ValueError, match="--units pct must be one of percent, fraction"):
+        from_file(path, "pct")
+    write(tmp_path, "exx,eyy,gxy\n0,0,0\n0,0.5,0\n")
+    assert from_file(path).points[1, 1] == 0.5
+    write(tmp_path, "exx,eyy,gxy\n0,0,0\n0,-10.5,0\n")
+    with pytest.raises(ValueError, match=r"line 3: eyy = -10.5 is a strain of -10.5, beyond 10"):
+        from_file(path, "fraction")
+    write(tmp_path, "exx [%],eyy [%],gxy [%]\n0,0,0\n0,-1.0,0\n")
+    np.testing.assert_allclose(from_file(path, "percent").points[:, 1], [0, -0.01])
+    with pytest.raises(ValueError, match="exx is in percent by its header, not in fraction; leave --units out"):
+        from_file(path, "fraction")

@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 from mpm_verify.cases.mms.sweep import Sweep, build
 
-from mpm_verify.cases.harness.study import Failure
 from mpm_verify.cases.mms import case
 from mpm_verify.cases.mms.graded import Bounded, Plan, build_graded, cost_of, factor, kind, savings
 from mpm_verify.cases.mms.packing import counts, full_cells, outline
 from mpm_verify.cases.mms.run import NORMS, QUANTITIES, Result, Run
 from mpm_verify.mms.grading import Grading, equidistributed, expected_strain
 from mpm_verify.mms.manufacture import Manufactured
+from mpm_verify.reports.sentences import failures
+from mpm_verify.solver.failure import Failure, FailureKind
 from mpm_verify.solver.layout import CENTRED, Layout, annulus, graded, rectangle
 from mpm_verify.solver.plugins import LAYOUTS, SOLUTIONS, available, create
 from mpm_verify.solver.state import Floats, Grid
@@ -158,10 +159,10 @@ def test_full_cells_are_those_that_the_body_covers() -> None:
 def test_a_layout_with_an_empty_cell_is_refused_with_its_cell() -> None:
     result, _ = case.execute(run("thinned:contrast=4"))
     assert result.status == "failed"
-    assert result.failure == Failure("no particle in a cell that the body fills", 0, -1, result.failure.cell)
+    assert result.failure == Failure(FailureKind.EMPTY_CELL, 0, -1, result.failure.cell)
     i, j = result.failure.cell or (-1, -1)
     assert held(laid("thinned:contrast=4", cells=16), 16)[i, j] == 0
-    assert str(result.failure).endswith(f"at step 0 in cell ({i}, {j})")
+    assert failures.failure(result.failure).endswith(f"at step 0 in cell ({i}, {j})")
     assert result.packed is not None
     assert result.packed.widest > 1
     assert result.steps == 0

@@ -3,7 +3,6 @@
 import ast
 import json
 import os
-import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -11,12 +10,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from fixtures_tree import FLOORS, Tree, copied, forget
 
-from mpm_verify.solver import _jit, sources
+from mpm_verify.solver import _jit, cache_folder
 from mpm_verify.solver.plugins import available
-from mpm_verify.solver.sources import TOP
+from mpm_verify.solver.source_hash import TOP
 
-FLOORS = ("solver", "mms", "cases", "reports", "verify")
 FILES = sorted(file for floor in FLOORS for file in (TOP / floor).rglob("*.py"))
 COMPILERS = {"njit", "jit", "vectorize", "guvectorize", "cfunc", "stencil", "jitclass", "overload"}
 KERNELS = [file for file in FILES if "import" in file.read_text() and "@kernel" in file.read_text()]
@@ -65,7 +64,7 @@ def dispatchers() -> Iterator[tuple[str, Any]]:
     for file in KERNELS:
         import_module(".".join(("mpm_verify", *file.relative_to(TOP).with_suffix("").parts)))
     for name, module in list(sys.modules.items()):
-        if name.partition(".")[0] in ("solver", "cases", "mms") or name.startswith("exact_"):
+        if name.partition(".")[0] == "mpm_verify" or name.startswith("exact_"):
             for key, value in vars(module).items():
                 if isinstance(value, Dispatcher) and value.py_func.__module__ == name:
                     yield f"{name}.{key}", value
@@ -100,51 +99,56 @@ def test_options_of_every_kernel() -> None:
 
 
 @pytest.fixture
-def copy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A copy of the sources that the cache folder's name is taken from."""
-    top = tmp_path / "copy"
-    for floor in FLOORS:
-        shutil.copytree(TOP / floor, top / floor, ignore=shutil.ignore_patterns("__pycache__"))
-    monkeypatch.setattr(_jit, "TOP", top)
-    monkeypatch.setattr(sources, "TOP", top)
+def tree(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Tree]:
+    """A copy of the sources that the names of the cache's folders are taken from, and a cache of its own."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    return top
+    cache_folder.base.cache_clear()
+    yield Tree(copied(tmp_path), monkeypatch)
+    monkeypatch.undo()
+    cache_folder.base.cache_clear()
+    forget()
 
 
-@pytest.mark.parametrize("file", [*KERNELS, TOP / "solver/_jit.py"], ids=lambda file: file.relative_to(TOP).as_posix())
-def test_the_cache_follows_every_kernel_source(copy: Path, file: Path) -> None:
-    """A changed byte in any file with a kernel means another folder, and undone the same one again."""
-    before = _jit.cache_folder()
-    assert before.is_relative_to(copy.parent / "cache")
-    assert before == _jit.cache_folder()
-    text = (copy / file.relative_to(TOP)).read_text()
-    (copy / file.relative_to(TOP)).write_text(text + "#")
-    assert _jit.cache_folder() != before
-    (copy / file.relative_to(TOP)).write_text(text)
-    assert _jit.cache_folder() == before
+def folders() -> dict[str, str]:
+    """Names of the folders of all kernel files."""
+    names = (".".join(("mpm_verify", *file.relative_to(TOP).with_suffix("").parts)) for file in KERNELS)
+    return {name: _jit._ours.__wrapped__(name).name for name in names}
 
 
-def test_the_cache_follows_names_and_new_files(copy: Path) -> None:
-    before = _jit.cache_folder()
-    (copy / "solver/basis/extra.py").write_text("")
-    added = _jit.cache_folder()
-    (copy / "solver/basis/extra.py").rename(copy / "solver/basis/other.py")
-    assert len({before, added, _jit.cache_folder()}) == 3
+def moved(before: dict[str, str]) -> set[str]:
+    return {name.removeprefix("mpm_verify.") for name, folder in folders().items() if folder != before[name]}
 
 
-def test_a_home_that_cannot_be_written(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The cache then goes to a temporary folder; here a file stands where the folder would be."""
-    (copy.parent / "file").write_text("")
-    monkeypatch.setenv("XDG_CACHE_HOME", str(copy.parent / "file"))
-    monkeypatch.setattr(_jit.tempfile, "gettempdir", lambda: str(copy.parent / "spare"))
-    folder = _jit.cache_folder()
-    assert folder.is_relative_to(copy.parent / "spare")
-    assert os.access(folder, os.W_OK)
+def test_the_cache_follows_what_a_kernel_is_made_from(tree: Tree) -> None:
+    before = folders()
+    assert len(set(before.values())) == len(KERNELS) > 20
+    tree.replace("solver/weights.py", "def bilinear(", "# a comment\n\n\ndef bilinear(")
+    tree.replace("solver/transfer.py", '"""', '"""Other words. ')
+    tree.append("solver/material/another.py")
+    assert moved(before) == set()
+    tree.append("solver/basis/mpm.py")
+    assert moved(before) == {"solver.basis.mpm"}
+    tree.append("solver/basis/cpdi.py")
+    assert moved(before) == {"solver.basis.mpm", "solver.basis.cpdi", "solver.basis._cpdi_limited"}
+    tree.append("solver/frames.py")
+    assert "solver.rates.jaumann" in moved(before)
+    assert "solver.transfer" not in moved(before)
+    tree.append("solver/weights.py")
+    assert {"solver.transfer", "solver.basis.gimp"} <= moved(before)
+    assert "solver.material.neo_hookean" not in moved(before)
+    tree.append("solver/_jit.py")
+    assert moved(before) == {name.removeprefix("mpm_verify.") for name in before}
+
+
+def test_the_cache_follows_numba(tree: Tree, monkeypatch: pytest.MonkeyPatch) -> None:
+    before = folders()
+    monkeypatch.setattr(_jit.llvmlite, "__version__", "another")
+    assert not set(before.values()) & set(folders().values())
 
 
 COUNT = """
 import json, sys
-sys.path.insert(0, "tests")
+sys.path.insert(0, sys.argv[1])
 from test_jit import count
 print(json.dumps(count()))
 """
@@ -167,15 +171,22 @@ def count() -> dict[str, tuple[int, int]]:
     }
 
 
-def process(**environment: str) -> dict[str, list[int]]:
-    """The counts of a new process."""
+def process(top: Path = TOP, **environment: str) -> dict[str, list[int]]:
+    """The counts of a new process, of the package at `top`."""
     done = subprocess.run(
-        [sys.executable, "-c", COUNT], capture_output=True, text=True, cwd=TOP, env={**os.environ, **environment}
-    )
+        [sys.executable, "-c", COUNT, str(Path(__file__).parent)], capture_output=True, text=True, cwd=top.parent,
+        env={**os.environ, "PYTHONPATH": str(top.parent), **environment},
+    )  # fmt: skip
     assert done.returncode == 0, done.stderr
     counts: dict[str, list[int]] = json.loads(done.stdout)
     assert len(counts) > 10
     return counts
+
+
+def missed(counts: dict[str, list[int]]) -> set[str]:
+    """Files of the kernels that were compiled; each kernel was either compiled or found."""
+    assert all(stats in ([1, 0], [0, 1]) for stats in counts.values()), counts
+    return {name.rpartition(".")[0].removeprefix("mpm_verify.") for name, stats in counts.items() if stats == [0, 1]}
 
 
 def contents(folder: Path) -> dict[str, float]:
@@ -185,20 +196,27 @@ def contents(folder: Path) -> dict[str, float]:
 
 def test_a_second_process_hits_the_cache() -> None:
     """This process has compiled or loaded everything once, so the next one compiles nothing and writes nothing."""
-    count()
+    assert {"mpm_verify.solver.transfer.p2g", "mpm_verify.solver.basis.gimp.fill"} <= count().keys()
     before = contents(_jit.CACHE)
-    missed = {name: stats for name, stats in process().items() if stats != [1, 0]}
-    assert not missed
+    assert not missed(process())
     assert contents(_jit.CACHE) == before
 
 
 @pytest.mark.slow
-def test_a_cold_and_a_warm_process(tmp_path: Path) -> None:
-    """Cold, every kernel is compiled; warm, none is, and the folder stays as it is."""
-    cold = process(XDG_CACHE_HOME=str(tmp_path))
+def test_only_what_an_edit_changes_is_compiled_again(tmp_path: Path) -> None:
+    """Cold, every kernel is compiled; warm, none is, and the folder stays as it is; nor is any after a comment."""
+    top, home = copied(tmp_path), str(tmp_path / "cache")
+    cold = process(top, XDG_CACHE_HOME=home)
     assert all(stats == [0, 1] for stats in cold.values()), cold
-    before = contents(tmp_path)
+    before = contents(tmp_path / "cache")
     assert sum(name.endswith(".nbi") for name in before) >= len(cold)
-    warm = process(XDG_CACHE_HOME=str(tmp_path))
-    assert all(stats == [1, 0] for stats in warm.values())
-    assert contents(tmp_path) == before
+    assert not missed(process(top, XDG_CACHE_HOME=home))
+    assert contents(tmp_path / "cache") == before
+    for name in ("weights", "transfer", "basis/cpdi", "_jit"):
+        file = top / f"solver/{name}.py"
+        file.write_text("# a comment\n\n" + file.read_text().replace('"""', '"""Other words. ', 1))
+    assert not missed(process(top, XDG_CACHE_HOME=home))
+    for name, compiled in (("cpdi", {"solver.basis.cpdi"}), ("_gimp", {"solver.basis.gimp", "solver.basis.cpgimp"})):
+        with (top / f"solver/basis/{name}.py").open("a") as file:
+            file.write("EDITED = 1\n")
+        assert missed(process(top, XDG_CACHE_HOME=home)) == compiled

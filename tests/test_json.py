@@ -14,10 +14,10 @@ import fixtures_study as fixtures
 import pytest
 from jsonschema import Draft202012Validator, ValidationError
 
-from mpm_verify.cases.harness.study import Failure
 from mpm_verify.cases.mms import case as mms
 from mpm_verify.cases.mms.run import NORMS, QUANTITIES, Result
 from mpm_verify.reports.export.document import SCHEMA, VERSION
+from mpm_verify.solver.failure import Failure, FailureKind
 from mpm_verify.verify.main import main
 
 Json = dict[str, Any]
@@ -67,7 +67,7 @@ def test_standard_output_is_one_valid_document(real: tuple[subprocess.CompletedP
     assert run.stderr == ""  # no progress bar either: standard error is no terminal here
     document = parse(run.stdout)
     validate(document)
-    assert document["version"] == VERSION == 2
+    assert document["version"] == VERSION == 3
     assert (folder / document["report"]).is_file()
     assert run.returncode == 3  # three levels are too few for CPDI
 
@@ -89,7 +89,8 @@ def test_failed_runs_are_told(real: tuple[subprocess.CompletedProcess[str], Path
     assert failed == {("mpm", 16, 1, 0.4), ("mpm", 32, 1, 0.4)}
     for key, run in runs.items():
         assert (run["errors"] is None) == (key in failed)
-        assert ("det F" in run["reason"]) == (key in failed)
+        assert ((run["failure"] or {}).get("kind") == "inverted") == (key in failed)
+        assert ("det F ≤ 0 at step" in run["reason"]) == (key in failed)
         assert run["particles"] == run["ppc"] * run["cells"] ** 2
     assert ("cpdi", 32, 4, 0.2) in runs  # with half the time step
 
@@ -123,7 +124,7 @@ def told(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tm
 
 
 def lost(result: Result) -> Result:
-    return replace(result, status="failed", errors={}, floor={}, failure=Failure("det F <= 0 & <more>", 3, 5, (1, 2)))
+    return replace(result, status="failed", errors={}, floor={}, failure=Failure(FailureKind.INVERTED, 3, 5, (1, 2)))
 
 
 def leaking(result: Result) -> Result:
@@ -162,9 +163,10 @@ def test_expected_divergence_passes_in_words(told: Callable[..., Any]) -> None:
     exit_code, document, suite = told(lambda result: result, "--method", "mpm")
     assert exit_code == 0
     assert {(v["expected"], v["verdict"]) for v in document["verdicts"]} == {("diverges", "PASS")}
+    assert {v["code"] for v in document["verdicts"]} == {"diverges"}
     assert all("does not converge, as expected" in v["reason"] for v in document["verdicts"])
     for told_of, case in zip(document["verdicts"], suite.iter("testcase"), strict=True):
-        assert told_of["stall"]["named"] == ["cell crossings"]
+        assert told_of["stall"]["named"] == ["cell_crossings"]
         assert told_of["stall"]["where"] in (case.findtext("system-out") or "")
     assert suite.get("failures") == "0"
 

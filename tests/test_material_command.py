@@ -60,7 +60,7 @@ def test_a_wrong_direction_of_flow_is_seen(monkeypatch: pytest.MonkeyPatch) -> N
     wrong = create("mpm_verify.solver.material", "mohr_coulomb:psi=31").constants()
     monkeypatch.setattr(mohr_coulomb.MohrCoulomb, "constants", lambda self: wrong)
     missed = {check.name for check in law_checks(law) if check.outcome is not Outcome.PASS}
-    assert "plane: largest miss, zz in any place" in missed
+    assert "plane: largest miss, zz in any position" in missed
     assert "dilation, vertical strain over shear" in missed
 
 
@@ -109,6 +109,32 @@ def test_a_path_of_ones_own_is_shown_and_not_judged(
     curves = load(tmp_path / "out").curves["test/path"]
     assert curves["tau"][-1] != 0
     assert np.isfinite(curves["s"]).all()
+
+
+def test_what_was_read_and_what_has_no_effect_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """On the terminal, in JSON and on the page: columns, the largest strain, and a rate where nothing turns."""
+    path, out = tmp_path / "mine.csv", tmp_path / "out"
+    path.write_text("time;EXX [%];eyy [%];ezz [%];gxy [%]\n0;0;0;0;0\n1;0;-0,1;0;0\n")
+    words = ("material", "hypoelastic:rate=jaumann", "--path", str(path), "--steps", "4", "--out", str(out))
+    code, said, err = verify(monkeypatch, capsys, *words)
+    assert (code, err) == (0, "")
+    flat = " ".join(said.split())
+    notes = json.loads(verify(monkeypatch, capsys, *words, "--json")[1])["notes"]
+    page = (out / "report.html").read_text()
+    for line in (
+        "rate=jaumann changes nothing here: along a path of strains the law works in its own frame",
+        "exx, eyy, gxy are read of mine.csv; the largest strain is 0.001 (0.1 %).",
+        "ezz: zero in every row, as in plane strain",
+        "not used of mine.csv: time.",
+    ):
+        assert f"note: {line}" in flat
+        assert [note for note in notes if note.startswith(line)]
+        assert f"Note: {line}" in page
+    assert len(notes) == 4
+    code, said, err = verify(monkeypatch, capsys, "material", "hypoelastic", "--test", "isotropic", *words[4:])
+    assert "note:" not in said
 
 
 @pytest.mark.parametrize("name", ["mohr_coulomb", "drucker_prager"])
@@ -217,6 +243,8 @@ def test_the_share_counts_the_steps() -> None:
         (["neo_hookean", "--stress", "5"], "a law of F starts undeformed"),
         (["ubcsand", "--steps", "0"], "--steps takes whole numbers from 1"),
         (["ubcsand", "--path", "none.csv"], "none.csv: no such file"),
+        (["ubcsand", "--path", "none.csv", "--units", "pct"], "--units pct must be one of percent, fraction"),
+        (["ubcsand", "--units", "percent"], "--units belongs to --path FILE.csv"),
     ],
 )
 def test_what_is_wrong_is_one_line(

@@ -124,12 +124,13 @@ def test_a_lead_counts_what_missed() -> None:
     checks = list(coarse().checks)
     passed = [check for check in checks if check.outcome is Outcome.PASS]
     curves = coarse().curves
-    turns = lead(passed, curves, ["strain_end"])
+    turns = lead(COARSE, passed, curves, ["strain_end"])
     assert turns.code == ObjectivityRemark.TURNS
     assert f"reaches {curves[f'run/{SMALL}']['xy'].max():.3f} of the vertical stress" in sentence(turns)
+    assert "the closed form has 0.286." in sentence(turns)
     assert f"All {len(WRONG)} negative controls are seen" in sentence(turns)
     failed = replace(passed[0], found=np.nan)
-    missed = lead([failed, *passed[1:]], curves, [])
+    missed = lead(COARSE, [failed, *passed[1:]], curves, [])
     assert sentence(missed).startswith(f"1 of {len(passed)} checks did not pass")
 
 

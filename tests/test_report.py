@@ -13,10 +13,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from mpm_verify.cases.harness import identity
 from mpm_verify.cases.harness.store import Store, StoreError
-from mpm_verify.cases.harness.study import Failure, QuantityPlan
+from mpm_verify.cases.harness.study import QuantityPlan
 from mpm_verify.cases.judging.order import Expectation
-from mpm_verify.cases.mms import run as contract
 from mpm_verify.cases.mms.run import Run
 from mpm_verify.mms.blind_spots import ALWAYS
 from mpm_verify.reports import words
@@ -25,6 +25,8 @@ from mpm_verify.reports.components.cards import cards
 from mpm_verify.reports.figures.error_field import choose, domains
 from mpm_verify.reports.frames import read
 from mpm_verify.reports.pages.mms import render
+from mpm_verify.reports.sentences import failures, verdicts
+from mpm_verify.solver.failure import Failure, FailureKind
 
 
 @pytest.fixture(autouse=True)
@@ -139,10 +141,10 @@ def test_every_run_is_listed_with_its_end(folder: Path, page: str) -> None:
     assert len(record.study.runs) == 32
     for run in record.study.runs:
         assert run.digest in said
-    failures = [r.failure for r in record.results.values() if r.failure]
-    assert len(failures) == 6
-    for failure in failures:
-        assert words.prose(str(failure)) in said
+    found = [r.failure for r in record.results.values() if r.failure]
+    assert len(found) == 6
+    for failure in found:
+        assert failures.failure(failure) in said
     assert page.count('<td class="text lost">failed</td>') == 6
 
 
@@ -219,7 +221,7 @@ def test_two_solutions_are_told_apart(tmp_path: Path) -> None:
 
 def test_results_of_earlier_sources_are_shown_and_named_as_such(tmp_path: Path) -> None:
     fixtures.make(tmp_path, ("cpdi",))
-    with patch.object(contract, "sources_digest", lambda: "later"):
+    with patch.object(identity, "sources", lambda *_: "later"):
         said = text(render(tmp_path).read_text())
     assert "computed by other sources than those now installed" in said
     assert "2 of 2 judged quantities PASS." in said
@@ -291,8 +293,11 @@ def test_numbers_are_written_alike(value: float | None, written: str) -> None:
 
 def test_words_of_expectations_and_failures() -> None:
     expected = QuantityPlan("cpdi", "affine", 4, "u", "rms", True, Expectation(2.0))
-    assert words.expected(expected) == "2.00 (1.80 to 2.30)"
-    assert words.expected(replace(expected, expectation=Expectation(None))) == "diverges"
+    assert verdicts.registered(expected.expectation) == "2.00 (1.80 to 2.30)"
+    assert verdicts.registered(Expectation(None)) == "diverges"
     assert words.series(Run("mpm", "affine", "neo_hookean", 8, 9, 0.4)) == "MPM, 9 per cell"
-    assert words.prose(str(Failure("det F <= 0", 3, 7, (1, 2)))) == "det F ≤ 0 at step 3, particle 7 in cell (1, 2)"
+    assert (
+        failures.failure(Failure(FailureKind.INVERTED, 3, 7, (1, 2)))
+        == "det F ≤ 0 at step 3, particle 7 in cell (1, 2)"
+    )
     assert words.order(-0.476) == f"{words.MINUS}0.48"

@@ -6,17 +6,22 @@ from functools import cache
 
 import fixtures_study as fixtures
 import pytest
-from mpm_verify.cases.mms.sweep import Sweep, build
 
-from mpm_verify.cases.harness.study import Failure, QuantityPlan, Study
+from mpm_verify.cases.harness.build import Asked, build
+from mpm_verify.cases.harness.study import QuantityPlan, Study
 from mpm_verify.cases.harness.verdicts import Finding as Found
 from mpm_verify.cases.harness.verdicts import doublings, findings
 from mpm_verify.cases.judging.order import Expectation
-from mpm_verify.cases.judging.stall import Cause, Finding, Measured, Peer, Stall, explain
+from mpm_verify.cases.judging.records import Ended
+from mpm_verify.cases.judging.stall import Cause, CauseCode, Finding, Measured, Peer, Stall, explain
 from mpm_verify.cases.mms import case as mms
 from mpm_verify.cases.mms.run import Result, Run
+from mpm_verify.reports import words
 from mpm_verify.reports.components import stalls as told
+from mpm_verify.reports.sentences import stalls as sentences
+from mpm_verify.reports.sentences import verdicts
 from mpm_verify.solver._jit import use_threads
+from mpm_verify.solver.failure import Failure, FailureKind
 
 CELLS = (8, 16, 32, 64)
 AT_64 = 6.4e-3 / 64  # what second order gives there
@@ -34,13 +39,13 @@ def stall(**changes: object) -> Stall:
     return found
 
 
-def cause(found: Stall, word: str) -> Cause:
-    (one,) = [c for c in found.causes if word in c.name]
+def cause(found: Stall, code: CauseCode) -> Cause:
+    (one,) = [c for c in found.causes if c.code is code]
     return one
 
 
-def names(found: Stall) -> list[str]:
-    return [c.name for c in found.named]
+def named_in(found: Stall) -> list[CauseCode]:
+    return [c.code for c in found.named]
 
 
 # ---- is there a stall?
@@ -71,7 +76,7 @@ def falling(orders: tuple[float, ...]) -> Measured:
 
 
 def test_where_is_said() -> None:
-    assert stall().where == "from 32 to 64 cells the order is 0.58; 2.00, 1.42 before"
+    assert sentences.where(stall()) == "from 32 to 64 cells the order is 0.58; 2.00, 1.42 before"
 
 
 @pytest.mark.parametrize("registered", [(0.7, 0.3), (2.0, 1.5)])
@@ -94,10 +99,10 @@ def test_an_error_of_zero_is_no_stall() -> None:
 
 def test_nothing_is_named_where_nothing_explains() -> None:
     found = stall()
-    assert names(found) == []
-    assert found.why[0] == "The evidence does not name a cause."
+    assert named_in(found) == []
+    assert sentences.why(found)[0] == "The evidence does not name a cause."
     assert {c.finding for c in found.causes} == {Finding.EXCLUDED, Finding.UNKNOWN}
-    assert "Not measured: quadrature" in " ".join(found.why)
+    assert "Not measured: quadrature" in " ".join(sentences.why(found))
 
 
 @pytest.mark.parametrize(
@@ -107,12 +112,13 @@ def test_nothing_is_named_where_nothing_explains() -> None:
 def test_particles(ppc: int, share: float, weight: float) -> None:
     """Named if another count changes the error by as much as the excess; fewer particles where none has more."""
     found = stall(other=(ppc, (6e-4 * share, 4 * AT_64 * share)))
-    one = cause(found, "quadrature")
+    one = cause(found, CauseCode.QUADRATURE)
     assert one.weight == pytest.approx(weight, abs=1e-4)
-    assert (one.name in names(found)) == (weight >= 0.5)
+    assert (one.code in named_in(found)) == (weight >= 0.5)
     assert one.finding is (Finding.SHOWN if weight >= 0.25 else Finding.EXCLUDED)
-    assert f"with {ppc} per cell in place of 4" in one.text
-    assert any(text.startswith("In part quadrature") for text in found.why) == (0.25 <= weight < 0.5)
+    assert f"with {ppc} per cell in place of 4" in sentences.measured(one)
+    assert (one.numbers["ppc"], one.numbers["other_ppc"]) == (4, ppc)
+    assert any(text.startswith("In part quadrature") for text in sentences.why(found)) == (0.25 <= weight < 0.5)
 
 
 @pytest.mark.parametrize(
@@ -127,10 +133,11 @@ def test_particles(ppc: int, share: float, weight: float) -> None:
 )
 def test_gaps(gaps: tuple[float | None, ...], named: bool) -> None:
     found = stall(gaps=gaps, peers=(Peer("other", 2.0, 0.0, 0.01), Peer("worse", 0.5, 0.0, 0.01)))
-    one = cause(found, "gaps")
-    assert (one.name in names(found)) == named
+    one = cause(found, CauseCode.GAPS)
+    assert (one.code in named_in(found)) == named
     assert one.finding is (Finding.PRESENT if named else Finding.EXCLUDED)
-    assert ("other has 1.0% and order 2.00" in one.text) == (gaps[-1] is not None and gaps[-1] >= 0.02)
+    assert (one.peer == Peer("other", 2.0, 0.0, 0.01)) == (gaps[-1] is not None and gaps[-1] >= 0.02)
+    assert ("other has 1.0 % and order 2.00" in sentences.measured(one)) == (one.peer is not None)
 
 
 @pytest.mark.parametrize(
@@ -144,55 +151,63 @@ def test_gaps(gaps: tuple[float | None, ...], named: bool) -> None:
 )
 def test_time_step(halved: float, finding: Finding, named: bool) -> None:
     found = stall(halved=4 * AT_64 * halved)
-    one = cause(found, "time step")
+    one = cause(found, CauseCode.TIME_STEP)
     assert one.finding is finding
-    assert (one.name in names(found)) == named
-    assert f"changes the finest error by {halved - 1:+.1%}" in one.text
+    assert (one.code in named_in(found)) == named
+    assert one.numbers["change"] == pytest.approx(halved - 1)
+    assert f"changes the finest error by {words.percent(halved - 1, 1, '+')}" in sentences.measured(one)
 
 
 def test_time_step_that_nobody_halved() -> None:
-    assert cause(stall(halved=None), "time step").finding is Finding.UNKNOWN
+    assert cause(stall(halved=None), CauseCode.TIME_STEP).finding is Finding.UNKNOWN
 
 
 @pytest.mark.parametrize(("floor", "named"), [(1e-14, False), (1e-7, False), (1e-5, True)])
 def test_round_off(floor: float, named: bool) -> None:
     found = stall(floor=floor)
-    assert ("round-off" in names(found)) == named
+    assert (CauseCode.ROUND_OFF in named_in(found)) == named
 
 
 def test_crossings_are_named_where_the_excess_grows_with_them() -> None:
     found = stall(crossings=(2.0, 4.0, 8.0, 16.0), errors=(6.4e-3, 1.6e-3, 5e-4, 4 * AT_64), gaps=(0.2,) * 4)
-    assert names(found) == ["cell crossings", "gaps and overlaps between domains"]
-    assert "they grow 2.0-fold and the error beyond order 2 3.0-fold" in cause(found, "crossings").text
+    assert named_in(found) == [CauseCode.CROSSINGS, CauseCode.GAPS]
+    one = cause(found, CauseCode.CROSSINGS)
+    assert (one.numbers["ratio"], one.numbers["excess_ratio"]) == pytest.approx((2.0, 3.0))
+    assert "they grow 2.0-fold and the error beyond order 2 3.0-fold" in sentences.measured(one)
 
 
 def test_crossings_explain_only_what_others_leave() -> None:
     """The excess is 3e-4 on both of the finest levels: it does not grow with the crossings."""
     steady = {"crossings": (2.0, 4.0, 8.0, 16.0), "errors": (6.4e-3, 1.6e-3, 7e-4, 4 * AT_64)}
     alone, beside = stall(**steady), stall(**steady, gaps=(0.2,) * 4)
-    assert names(alone) == ["cell crossings"]
-    assert names(beside) == ["gaps and overlaps between domains"]
-    assert any(text.startswith("Measured too: cell crossings") for text in beside.why)
+    assert named_in(alone) == [CauseCode.CROSSINGS]
+    assert named_in(beside) == [CauseCode.GAPS]
+    assert any(text.startswith("Measured too: cell crossings") for text in sentences.why(beside))
 
 
 def test_without_crossings_they_are_excluded() -> None:
-    assert cause(stall(crossings=(0.0, 0.0, 0.1, 0.2)), "crossings").finding is Finding.EXCLUDED
+    assert cause(stall(crossings=(0.0, 0.0, 0.1, 0.2)), CauseCode.CROSSINGS).finding is Finding.EXCLUDED
 
 
 def test_a_method_that_crosses_as_often_and_converges_is_named() -> None:
     peers = (Peer("good", 1.99, 16.0, None), Peer("calm", 2.0, 1.0, None), Peer("bad", 0.3, 16.0, None))
-    text = cause(stall(crossings=(2.0, 4.0, 8.0, 16.0), peers=peers), "crossings").text
-    assert text.endswith("good passes 16.0 and has order 1.99")
+    one = cause(stall(crossings=(2.0, 4.0, 8.0, 16.0), peers=peers), CauseCode.CROSSINGS)
+    assert one.peer == peers[0]
+    assert sentences.measured(one).endswith("good passes 16.0 and has order 1.99")
 
 
-def test_lost_runs_are_told() -> None:
-    lost = "the run with 128 cells ended: det F <= 0 at step 21"
-    assert stall(lost=lost).where.endswith(lost)
-    converged = explain(replace(falling((2.0, 2.0)), lost=lost, crossings=(1.0, 2.0, 4.0)))
+def test_failed_runs_are_told() -> None:
+    end = Ended(1 / 128, Failure(FailureKind.INVERTED, 21))
+    assert stall(ended=end).ended == end
+    assert sentences.where(stall(ended=end)).endswith("; the run with 128 cells ended: det F ≤ 0 at step 21")
+    converged = explain(replace(falling((2.0, 2.0)), ended=end, crossings=(1.0, 2.0, 4.0)))
     assert converged is not None
-    assert converged.where == "the finest run that finished has 32 cells"
-    assert names(converged) == ["a lost run"]
-    assert explain(Measured((), (), (), (), 4, lost=lost)) is None
+    assert (converged.coarser, converged.cells) == (None, 32)
+    assert sentences.where(converged) == "the finest run that finished has 32 cells"
+    assert named_in(converged) == [CauseCode.FAILED_RUN]
+    assert sentences.why(converged)[0] == "A failed run: the run with 128 cells ended: det F ≤ 0 at step 21."
+    assert sentences.why(converged)[1] == "Measured too: cell crossings (a particle passes 4.0 faces at 32 cells)."
+    assert explain(Measured((), (), (), (), 4, ended=end)) is None
 
 
 # ---- from Results
@@ -206,8 +221,10 @@ def sources() -> Iterator[None]:
 
 def recorded(method: str, ppc: int) -> Found:
     runs = tuple(Run(method, "axis_aligned", "neo_hookean", cells, ppc, 0.4) for cells in (8, 16, 32, 64, 128))
-    declared = QuantityPlan(method, "axis_aligned", ppc, "u", "rms", True, Expectation(None))
-    (found,) = findings(Study("mms", "t", "c", runs, (declared,)), {r.digest: fixtures._result(r) for r in runs})
+    declared = QuantityPlan(runs[0], "u", "rms", True, Expectation(None))
+    (found,) = findings(
+        Study("mms", "t", "c", runs, (declared,), case="mms"), {r.digest: fixtures._result(r) for r in runs}
+    )
     return found
 
 
@@ -216,23 +233,22 @@ def test_recorded_studies(sources: None) -> None:
     assert recorded("cpdi", 4).stall is None
     found = recorded("mpm", 4).stall
     assert found is not None
-    assert (
-        "from 32 to 64 cells the order is -0.85; -0.48, -1.09 before; the run with 128 cells ended: det F"
-        in found.where
+    assert sentences.where(found).startswith(
+        "from 32 to 64 cells the order is −0.85; −0.48, −1.09 before; the run with 128 cells ended: det F"
     )
     alone = recorded("mpm", 1).stall  # of five runs one finished
     assert alone is not None
     assert alone.order is None
-    assert "the run with 16 cells ended" in alone.why[0]
+    assert "the run with 16 cells ended" in sentences.why(alone)[0]
 
 
 def test_only_the_displacement_has_a_stall(sources: None) -> None:
     run = Run("mpm", "axis_aligned", "neo_hookean", 8, 4, 0.4)
     runs = tuple(replace(run, cells=cells) for cells in (8, 16, 32))
-    declared = [
-        QuantityPlan("mpm", "axis_aligned", 4, q, n, False, None) for q, n in (("u", "rms"), ("u", "max"), ("v", "rms"))
-    ]
-    found = findings(Study("mms", "t", "c", runs, tuple(declared)), {r.digest: fixtures._result(r) for r in runs})
+    declared = [QuantityPlan(run, q, n, False, None) for q, n in (("u", "rms"), ("u", "max"), ("v", "rms"))]
+    found = findings(
+        Study("mms", "t", "c", runs, tuple(declared), case="mms"), {r.digest: fixtures._result(r) for r in runs}
+    )
     assert [f.stall is not None for f in found] == [True, False, False]
 
 
@@ -243,10 +259,11 @@ def test_a_replicate_that_failed_is_no_lost_cell_size(sources: None) -> None:
     shifted = [replace(r, offset=(0.0, 0.25)) for r in runs]
     results = {r.digest: fixtures._result(r) for r in (*runs, *shifted)}
     lost = results[shifted[2].digest]
-    results[shifted[2].digest] = replace(lost, status="failed", errors={}, failure=Failure("det F <= 0", 3))
-    declared = QuantityPlan("cpdi", "axis_aligned", 4, "u", "rms", False, None)
-    (found,) = findings(Study("mms", "t", "c", (*runs, *shifted), (declared,)), results)
-    assert found.levels[2].ended == "det F <= 0 at step 3, replicate 2"
+    results[shifted[2].digest] = replace(lost, status="failed", errors={}, failure=Failure(FailureKind.INVERTED, 3))
+    declared = QuantityPlan(runs[0], "u", "rms", False, None)
+    (found,) = findings(Study("mms", "t", "c", (*runs, *shifted), (declared,), case="mms"), results)
+    assert found.levels[2].ended == Ended(1 / 32, Failure(FailureKind.INVERTED, 3), 1)
+    assert verdicts.ended(found.levels[2].ended) == "det F ≤ 0 at step 3, replicate 2"
     assert found.crossings == pytest.approx((2.0, 4.0, 8.0))
 
 
@@ -261,8 +278,8 @@ def test_orders_over_less_than_half_the_cells_do_not_make_a_stall(sources: None)
             result = fixtures._result(replace(run, cells=8))
             errors = {q: dict.fromkeys(norms, factor[run.cells] / run.cells**2) for q, norms in result.errors.items()}
             results[run.digest] = replace(result, run=run, digest=run.digest, errors=errors)
-        declared = QuantityPlan("cpdi", "axis_aligned", 4, "u", "rms", False, None)
-        return findings(Study("t", "t", "c", runs, (declared,)), results)[0]
+        declared = QuantityPlan(runs[0], "u", "rms", False, None)
+        return findings(Study("t", "t", "c", runs, (declared,), case="mms"), results)[0]
 
     for last in (1.0, 1.04):  # 64 to 96 cells: 2.1, and 1.86 after 2.14
         found = study({**scatter, 96: last})
@@ -271,7 +288,7 @@ def test_orders_over_less_than_half_the_cells_do_not_make_a_stall(sources: None)
         assert found.stall is None
     stalled = study({**scatter, 96: 1.5}).stall
     assert stalled is not None
-    assert stalled.where.startswith("from 48 to 96 cells the order is 1.42; 2.00, 2.00 before")
+    assert sentences.where(stalled).startswith("from 48 to 96 cells the order is 1.42; 2.00, 2.00 before")
 
 
 # ---- real runs, small: 8, 16 and 32 cells with 4 and 9 particles each
@@ -281,7 +298,9 @@ def test_orders_over_less_than_half_the_cells_do_not_make_a_stall(sources: None)
 def real(solution: str = "axis_aligned") -> dict[tuple[str, int], Found]:
     use_threads(1)
     methods = ("mpm", "gimp", "cpgimp", "cpdi", "bspline2")
-    study = build(Sweep(methods, solution, cells=(8, 16, 32), ppc=(4, 9)), "verify", "t")
+    study = build(
+        Asked("mms", {"method": methods, "solution": (solution,), "cells": (8, 16, 32), "ppc": (4, 9)}), "verify", "t"
+    )
     results: dict[str, Result] = {run.digest: mms.execute(run)[0] for run in study.runs}
     found = [f for f in findings(study, results) if (f.plan.quantity, f.plan.norm) == ("u", "rms")]
     return {(f.plan.run.method, f.plan.run.ppc): f for f in found}
@@ -290,14 +309,14 @@ def real(solution: str = "axis_aligned") -> dict[tuple[str, int], Found]:
 @pytest.mark.parametrize(
     ("method", "named", "not_named"),
     [
-        pytest.param("mpm", "cell crossings", "gaps and overlaps between domains", marks=pytest.mark.slow),
-        ("gimp", "gaps and overlaps between domains", "cell crossings"),
-        ("bspline2", "quadrature with so few particles", "gaps and overlaps between domains"),
+        pytest.param("mpm", CauseCode.CROSSINGS, CauseCode.GAPS, marks=pytest.mark.slow),
+        ("gimp", CauseCode.GAPS, CauseCode.CROSSINGS),
+        ("bspline2", CauseCode.QUADRATURE, CauseCode.GAPS),
         ("cpgimp", None, None),
         ("cpdi", None, None),
     ],
 )
-def test_real_runs(method: str, named: str | None, not_named: str | None) -> None:
+def test_real_runs(method: str, named: CauseCode | None, not_named: CauseCode | None) -> None:
     """CPDI and cpGIMP cross as many faces as GIMP and keep their order: their domains have no gaps."""
     found = real()[method, 4]
     assert found.crossings == pytest.approx((2, 4, 8), rel=0.3)
@@ -305,8 +324,8 @@ def test_real_runs(method: str, named: str | None, not_named: str | None) -> Non
         assert found.stall is None
     else:
         assert found.stall is not None
-        assert named in names(found.stall)
-        assert not_named not in names(found.stall)
+        assert named in named_in(found.stall)
+        assert not_named not in named_in(found.stall)
 
 
 @pytest.mark.slow

@@ -9,13 +9,13 @@ from mpm_verify.cases.mms import case as mms
 from mpm_verify.cases.mms.run import Run
 from mpm_verify.solver._jit import BLOCK
 from mpm_verify.solver.boundary import box
+from mpm_verify.solver.failure import FailureKind, RunFailed
 from mpm_verify.solver.layout import rectangle
 from mpm_verify.solver.material.neo_hookean import NeoHookean
 from mpm_verify.solver.plugins import available, load
 from mpm_verify.solver.state import Grid, Particles
 from mpm_verify.solver.step import (
     Model,
-    RunFailed,
     Scheme,
     advance,
     check_time_step,
@@ -243,7 +243,7 @@ def test_the_exponential_update(stress: str) -> None:
             grid_to_particles(m)
             np.testing.assert_allclose(np.linalg.det(m.particles.F), J, rtol=1e-12)
         else:
-            with pytest.raises(RunFailed, match="det F <= 0"):
+            with pytest.raises(RunFailed, match="inverted"):
                 grid_to_particles(m)
 
 
@@ -412,9 +412,9 @@ def test_leaving_the_grid(name: str) -> None:
     m, rows = two_bodies(name)
     free(m).particles.v[np.isin(m.particles.id, rows)] = (20.0, 0.0)
     X = m.particles.in_initial_order("X").copy()
-    with pytest.raises(RunFailed, match="outside the grid") as caught:
+    with pytest.raises(RunFailed, match="outside_grid") as caught:
         go(m, 100)
-    failed = caught.value
+    failed = caught.value.failure
     assert X[failed.particle, 0] == X[:, 0].max()  # the foremost column of the right body
     beyond = 1 + EDGE[name] * DX - X[failed.particle, 0]
     assert failed.step == m.steps == np.ceil(beyond / 0.02 - 1e-9)
@@ -428,9 +428,9 @@ def test_inverted(name: str) -> None:
     m, rows = two_bodies(name)
     p, mine = m.particles, np.isin(m.particles.id, rows)
     p.v[mine, 0] = -1500 * (p.x[mine, 0] - 12 * DX)
-    with pytest.raises(RunFailed, match="det F <= 0") as caught:
+    with pytest.raises(RunFailed, match="inverted") as caught:
         advance(m, still)
-    failed = caught.value
+    failed = caught.value.failure
     assert failed.step == 0
     assert failed.particle in rows
     assert np.linalg.det(m.particles.F[row_of(m, failed.particle)]) <= 0
@@ -444,10 +444,10 @@ def test_nan_velocity(name: str) -> None:
     X, start = m.particles.in_initial_order("X").copy(), rows[7]
     go(m, 3)
     m.particles.v[row_of(m, start), 1] = np.nan
-    with pytest.raises(RunFailed, match="not finite") as caught:
+    with pytest.raises(RunFailed, match="not_finite") as caught:
         advance(m, still)
-    assert caught.value.step == 3
-    assert np.abs(X[caught.value.particle] - X[start]).max() < 2 * REACH[name] * DX
+    assert caught.value.failure.step == 3
+    assert np.abs(X[caught.value.failure.particle] - X[start]).max() < 2 * REACH[name] * DX
 
 
 @every_basis
@@ -469,7 +469,7 @@ def test_det_f_overflows(entries: Any) -> None:
     m.particles.F[3] = np.reshape(entries, (2, 2))
     with pytest.raises(RunFailed) as caught:
         grid_to_particles(m)
-    assert caught.value.particle == m.particles.id[3]
+    assert caught.value.failure.particle == m.particles.id[3]
 
 
 def test_det_f_of_round_off() -> None:
@@ -481,9 +481,9 @@ def test_det_f_of_round_off() -> None:
     assert len(doubtful) > 0
     m = model("mpm")
     m.particles.F[3] = doubtful[0]
-    with pytest.raises(RunFailed, match="det F <= 0") as caught:
+    with pytest.raises(RunFailed, match="inverted") as caught:
         grid_to_particles(m)  # the grid is at rest: F stays
-    assert caught.value.particle == m.particles.id[3]
+    assert caught.value.failure.particle == m.particles.id[3]
 
 
 @pytest.mark.parametrize("speed", [0.0, 30.0])
@@ -495,9 +495,10 @@ def test_the_time_step_limit(speed: float) -> None:
     m.dt = 0.999 * limit
     check_time_step(m)
     m.dt = 1.001 * limit
-    with pytest.raises(RunFailed, match="stability limit") as caught:
+    with pytest.raises(RunFailed, match="unstable_step") as caught:
         check_time_step(m)
-    assert (caught.value.step, caught.value.particle, caught.value.cell) == (0, -1, None)
+    assert (caught.value.failure.step, caught.value.failure.particle, caught.value.failure.cell) == (0, -1, None)
+    assert caught.value.failure.numbers == {"dt": m.dt, "limit": pytest.approx(limit, rel=1e-12)}
 
 
 def run(**changes: Any) -> Run:
@@ -509,7 +510,7 @@ def test_a_time_step_above_the_limit_is_a_failed_result() -> None:
     result, arrays = mms.execute(run(courant=0.8))
     assert result.status == "failed"
     assert result.failure is not None
-    assert "stability limit" in result.failure.reason
+    assert result.failure.kind is FailureKind.UNSTABLE_STEP
     assert (result.failure.step, result.failure.particle, result.steps) == (0, -1, 0)
     assert result.errors == {}
     assert set(arrays) == {"X", "x", "F", "corners", "error_u"}
@@ -528,7 +529,7 @@ def test_det_f_is_a_failed_result() -> None:
     assert (result.status, result.errors) == ("failed", {})
     failure = result.failure
     assert failure is not None
-    assert failure.reason == "det F <= 0"
+    assert failure.kind is FailureKind.INVERTED
     assert failure.step == result.steps < 80
     assert 0 <= failure.particle < 256
     F = arrays["F"][failure.particle]  # arrays are in the initial order, and so is the particle's number
@@ -544,9 +545,11 @@ def off_the_grid(m: Model) -> None:
     shift(m.particles, [-10.0, -10.0], 17)
 
 
-@pytest.mark.parametrize(("plant", "reason"), [(nan_velocity, "not finite"), (off_the_grid, "outside the grid")])
+@pytest.mark.parametrize(
+    ("plant", "kind"), [(nan_velocity, FailureKind.NOT_FINITE), (off_the_grid, FailureKind.OUTSIDE_GRID)]
+)
 @every_basis
-def test_other_failures_are_results(name: str, plant: Any, reason: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_other_failures_are_results(name: str, plant: Any, kind: FailureKind, monkeypatch: pytest.MonkeyPatch) -> None:
     original = mms.setup
 
     def setup(run: Run) -> Any:
@@ -558,6 +561,6 @@ def test_other_failures_are_results(name: str, plant: Any, reason: str, monkeypa
     result, _ = mms.execute(run(method=name))
     assert result.status == "failed"
     assert result.failure is not None
-    assert reason in result.failure.reason
+    assert result.failure.kind is kind
     assert result.failure.particle >= 0
     assert result.failure.step == result.steps

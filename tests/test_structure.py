@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from mpm_verify.solver.plugins import available, camel, load
-from mpm_verify.solver.sources import TOP
+from mpm_verify.solver.source_hash import TOP
 
 FLOORS = ("solver", "mms", "cases", "reports", "verify")  # from the ground up
 PLUGINS = {

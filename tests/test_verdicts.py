@@ -5,20 +5,25 @@ from dataclasses import replace
 
 import fixtures_study as fixtures
 import pytest
-from mpm_verify.cases.mms.sweep import SOLUTIONS, Sweep, build, canonical
 
-from mpm_verify.cases.harness.study import Failure, QuantityPlan, Study
-from mpm_verify.cases.harness.verdicts import Finding, exit_code, findings, refinement
+from mpm_verify.cases.harness.analysis import Analysis
+from mpm_verify.cases.harness.build import Asked, build
+from mpm_verify.cases.harness.study import QuantityPlan, Study
+from mpm_verify.cases.harness.verdicts import Finding, findings, refinement
 from mpm_verify.cases.judging.order import Expectation, Outcome, Verdict
+from mpm_verify.cases.judging.records import Action, Ended, Reason, ReasonCode, Wanted
 from mpm_verify.cases.mms.expectations import later_with_9, registered, registry
 from mpm_verify.cases.mms.run import QUANTITIES, Result, Run
-from mpm_verify.solver.plugins import TRANSFERS, available
+from mpm_verify.reports.sentences import verdicts
+from mpm_verify.solver.failure import Failure, FailureKind
+from mpm_verify.solver.plugins import SOLUTIONS, TRANSFERS, available, canonical
 
 PASS, FAIL, INCONCLUSIVE, ERROR = Outcome
-JUDGED = QuantityPlan("cpdi", "axis_aligned", 4, "u", "rms", True, Expectation(2.0))
-SHOWN = replace(JUDGED, judged=False, expectation=None)
-LEVELS = tuple(Run("cpdi", "axis_aligned", "neo_hookean", cells, 4, 0.4) for cells in (8, 16, 32, 64, 128))
+CELLS = (8, 16, 32, 64, 128)
+LEVELS = tuple(Run("cpdi", "axis_aligned", "neo_hookean", cells, 4, 0.4) for cells in CELLS)
 HALVED = replace(LEVELS[-1], courant=0.2)
+JUDGED = QuantityPlan(LEVELS[0], "u", "rms", True, Expectation(2.0))
+SHOWN = replace(JUDGED, judged=False, expectation=None)
 
 
 @pytest.fixture(autouse=True)
@@ -28,7 +33,11 @@ def sources() -> Iterator[None]:
 
 
 def finding(outcome: Outcome, declared: QuantityPlan = JUDGED) -> Finding:
-    return Finding(declared, Verdict(outcome, 2.0, None, None, "because"), (), None)
+    return Finding(declared, Verdict(outcome, 2.0, None, None, Reason(ReasonCode.AS_EXPECTED)), (), None)
+
+
+def exit_code(found: list[Finding]) -> int:
+    return Analysis(tuple(found)).exit_code
 
 
 def made(runs: tuple[Run, ...]) -> dict[str, Result]:
@@ -36,11 +45,11 @@ def made(runs: tuple[Run, ...]) -> dict[str, Result]:
 
 
 def study(runs: tuple[Run, ...], *declared: QuantityPlan) -> Study:
-    return Study("mms", "title", "verify mms", runs, declared)
+    return Study("mms", "title", "verify mms", runs, declared, case="mms")
 
 
 def lost(result: Result) -> Result:
-    return replace(result, status="failed", errors={}, floor={}, failure=Failure("det F <= 0", 21, 35, (2, 2)))
+    return replace(result, status="failed", errors={}, floor={}, failure=Failure(FailureKind.INVERTED, 21, 35, (2, 2)))
 
 
 # ---- exit code
@@ -51,12 +60,12 @@ def lost(result: Result) -> Result:
     [
         ([PASS], 0),
         ([FAIL], 1),
-        ([ERROR], 2),
+        ([ERROR], 4),
         ([INCONCLUSIVE], 3),
         ([PASS, PASS], 0),
         ([PASS, INCONCLUSIVE], 3),
-        ([PASS, ERROR], 2),
-        ([INCONCLUSIVE, ERROR], 2),
+        ([PASS, ERROR], 4),
+        ([INCONCLUSIVE, ERROR], 4),
         ([ERROR, FAIL], 1),
         ([PASS, INCONCLUSIVE, ERROR, FAIL], 1),
         ([], 3),
@@ -99,14 +108,16 @@ def test_whole_study_passes() -> None:
 def test_without_the_halved_run_there_is_no_verdict() -> None:
     (found,) = findings(study(LEVELS, JUDGED), made(LEVELS))
     assert found.verdict.outcome is INCONCLUSIVE
-    assert "time step" in found.verdict.reason
+    assert found.verdict.reason.code is ReasonCode.TIME_STEP_UNKNOWN
+    assert found.verdict.reason.wanted == Wanted(Action.HALVE_FINEST, 1 / 128, CELLS)
 
 
 def test_halved_run_of_another_level_or_method_does_not_count() -> None:
     strangers = (replace(LEVELS[1], courant=0.2), replace(HALVED, ppc=9))
     runs = (*LEVELS, *strangers)
     (found,) = findings(study(runs, JUDGED), made(runs))
-    assert "time step" in found.verdict.reason
+    assert found.verdict.reason.code is ReasonCode.TIME_STEP_UNKNOWN
+    assert found.verdict.reason.wanted == Wanted(Action.HALVE_FINEST, 1 / 128, CELLS)
 
 
 def test_coupled_error_is_found_by_the_halved_run() -> None:
@@ -116,7 +127,8 @@ def test_coupled_error_is_found_by_the_halved_run() -> None:
     errors = {**half.errors, "u": {**half.errors["u"], "rms": 0.5 * half.errors["u"]["rms"]}}
     (found,) = findings(study(runs, JUDGED), {**results, HALVED.digest: replace(half, errors=errors)})
     assert found.verdict.outcome is INCONCLUSIVE
-    assert "coupled" in found.verdict.reason
+    assert found.verdict.reason.code is ReasonCode.TIME_STEP_COUPLED
+    assert found.verdict.reason.wanted == Wanted(Action.HALVE_ALL, 1 / 128, CELLS)
 
 
 def test_failed_halved_run_shows_nothing() -> None:
@@ -124,7 +136,8 @@ def test_failed_halved_run_shows_nothing() -> None:
     results = made(runs)
     (found,) = findings(study(runs, JUDGED), {**results, HALVED.digest: lost(results[HALVED.digest])})
     assert found.verdict.outcome is INCONCLUSIVE
-    assert "time step" in found.verdict.reason
+    assert found.verdict.reason.code is ReasonCode.TIME_STEP_UNKNOWN
+    assert found.verdict.reason.wanted == Wanted(Action.HALVE_FINEST, 1 / 128, CELLS)
 
 
 def test_failed_level_is_named_with_its_reason() -> None:
@@ -133,21 +146,26 @@ def test_failed_level_is_named_with_its_reason() -> None:
     failed = {**results, LEVELS[3].digest: lost(results[LEVELS[3].digest])}
     (found,) = findings(study(runs, JUDGED), failed)
     assert found.verdict.outcome is INCONCLUSIVE
-    assert "h=1/64 (det F <= 0 at step 21, particle 35 in cell (2, 2))" in found.verdict.reason
+    reason = found.verdict.reason
+    assert reason.code is ReasonCode.LEVEL_MISSING
+    assert reason.failed == (Ended(1 / 64, Failure(FailureKind.INVERTED, 21, 35, (2, 2))),)
+    assert "h=1/64 (det F ≤ 0 at step 21, particle 35 in cell (2, 2))" in verdicts.said(reason)
 
 
 def test_all_levels_failed_is_an_error() -> None:
     results = {digest: lost(result) for digest, result in made(LEVELS).items()}
     (found,) = findings(study(LEVELS, JUDGED), results)
     assert found.verdict.outcome is ERROR
-    assert exit_code([found]) == 2
+    assert exit_code([found]) == 4
 
 
 def test_incomplete_store() -> None:
     runs = (*LEVELS, HALVED)
     (found,) = findings(study(runs, JUDGED), made(LEVELS[:3]))
     assert found.verdict.outcome is INCONCLUSIVE
-    assert "not run yet" in found.verdict.reason
+    assert found.verdict.reason.code is ReasonCode.LEVEL_MISSING
+    assert found.verdict.reason.failed[0].failure.kind is FailureKind.NOT_RUN
+    assert "not run yet" in verdicts.said(found.verdict.reason)
     assert found.finest is None
 
 
@@ -159,12 +177,12 @@ def test_empty_store_is_no_crash(declared: QuantityPlan) -> None:
 
 
 def test_expected_non_convergence_is_met_by_failed_runs() -> None:
-    declared = replace(JUDGED, method="mpm", expectation=Expectation(None, source="literature"))
     runs = tuple(replace(run, method="mpm") for run in LEVELS)
+    declared = replace(JUDGED, run=runs[0], expectation=Expectation(None, source="literature"))
     (found,) = findings(study(runs, declared), made(runs))
     assert found.verdict.outcome is PASS
-    assert "does not converge, as expected" in found.verdict.reason
-    assert "det F <= 0" in found.verdict.reason
+    assert found.verdict.reason.code is ReasonCode.DIVERGES
+    assert [end.failure.kind for end in found.verdict.reason.failed] == [FailureKind.INVERTED]
 
 
 def test_findings_keep_the_order_of_the_declarations() -> None:
@@ -176,12 +194,11 @@ def test_findings_keep_the_order_of_the_declarations() -> None:
 # ---- what the MMS study declares
 
 
-def sweep(**changes: object) -> Sweep:
-    return replace(Sweep(cells=(8, 16, 32, 64)), **changes)
-
-
-def built(**changes: object) -> Study:
-    return build(sweep(**changes), "verify mms", "mms")
+def built(command: str = "verify mms", name: str = "mms", **changes: object) -> Study:
+    """Of cpdi on 8 to 64 cells unless another is asked for; a value or a tuple of them by the name of an axis."""
+    values = {"cells": (8, 16, 32, 64), **changes}
+    listed = {key: value if isinstance(value, tuple) else (value,) for key, value in values.items()}
+    return build(Asked("mms", listed), command, name)
 
 
 REGISTERED = sorted({(entry.method, entry.solution) for entry in registry() if entry.solution in available(SOLUTIONS)})
@@ -189,7 +206,7 @@ REGISTERED = sorted({(entry.method, entry.solution) for entry in registry() if e
 
 @pytest.mark.parametrize(("method", "solution"), REGISTERED)
 def test_judged_is_u_in_rms_with_4_and_9_per_cell(method: str, solution: str) -> None:
-    declared = built(methods=(method,), solution=solution).plan
+    declared = built(method=(method,), solution=solution).plans
     judged = {(d.quantity, d.norm, d.run.ppc) for d in declared if d.judged}
     counts = (4,) if later_with_9(method, solution, registered(solution, method, "u")) else (4, 9)
     assert judged == {("u", "rms", ppc) for ppc in counts}
@@ -201,9 +218,9 @@ def test_judged_is_u_in_rms_with_4_and_9_per_cell(method: str, solution: str) ->
 
 @pytest.mark.parametrize("changes", [{"solution": "axis_aligned:A=0.01"}, {"material": "neo_hookean:nu=0.2"}])
 def test_an_order_is_expected_whatever_the_parameters(changes: dict[str, str]) -> None:
-    judged = [d.expectation for d in built(**changes).plan if d.judged]
+    judged = [d.expectation for d in built(**changes).plans if d.judged]
     assert [(e.order, e.constant) for e in judged if e] == [(2.0, None)] * 2  # the recorded error holds for defaults
-    assert not any(d.judged for d in built(methods=("mpm",), **changes).plan)  # small amplitudes do converge
+    assert not any(d.judged for d in built(method=("mpm",), **changes).plans)  # small amplitudes do converge
 
 
 def test_nothing_is_expected_of_linear_elasticity() -> None:
@@ -223,20 +240,20 @@ def test_nothing_is_expected_of_another_transfer_or_stress_order(changes: dict[s
 
 def test_a_transfer_has_one_name() -> None:
     assert built(transfer="flip:share=1").runs == built().runs
-    assert any(d.judged for d in built(transfer="flip:share=1.0").plan)
+    assert any(d.judged for d in built(transfer="flip:share=1.0").plans)
     assert canonical(TRANSFERS, "fmpm:order=3.0") == "fmpm:order=3"
     assert canonical(TRANSFERS, "fmpm:order=2") == "fmpm"
 
 
 def test_halved_runs_only_where_an_order_is_expected() -> None:
-    study = built(methods=("cpdi", "mpm"))
+    study = built(method=("cpdi", "mpm"))
     halved = [(r.method, r.cells, r.ppc) for r in study.runs if r.courant == 0.2]
     assert halved == [("cpdi", 64, 4), ("cpdi", 64, 9)]
     assert {r.courant for r in study.runs} == {0.4, 0.2}
 
 
 def test_runs_are_the_whole_sweep_once() -> None:
-    study = built(cells=(16, 8, 16), ppc=(9, 1, 9), methods=("mpm",))
+    study = built(cells=(16, 8, 16), ppc=(9, 1, 9), method=("mpm",))
     assert [(r.cells, r.ppc) for r in study.runs] == [(8, 1), (16, 1), (8, 9), (16, 9)]
     assert len({r.digest for r in study.runs}) == len(study.runs)
 
@@ -262,13 +279,13 @@ def test_canonical_keeps_every_digit() -> None:
 
 
 def test_defaults_in_other_words_are_judged() -> None:
-    assert any(d.judged for d in built(solution="axis_aligned:phase=0").plan)
+    assert any(d.judged for d in built(solution="axis_aligned:phase=0").plans)
 
 
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
-        ({"methods": ("cpdi", "nope")}, "choose from"),
+        ({"method": ("cpdi", "nope")}, "choose from"),
         ({"cells": (8, 1)}, "whole numbers from 2 to 4096"),
         ({"ppc": (2,)}, "choose from 1, 4, 9, 16"),
         ({"courant": 0.0}, "0.001 to 10"),
@@ -286,6 +303,6 @@ def test_bad_sweep(changes: dict[str, object], said: str) -> None:
 
 @pytest.mark.parametrize("solution", ["axis_aligned", "clamped_shear"])
 def test_title_and_command_tell_what_was_asked(solution: str) -> None:
-    study = build(sweep(solution=solution, methods=("mpm", "cpdi")), "verify mms --quick", "name")
+    study = built("verify mms --quick", "name", solution=solution, method=("mpm", "cpdi"))
     assert study.title == f"MPM and CPDI against the manufactured solution {solution}"
     assert (study.command, study.name) == ("verify mms --quick", "name")

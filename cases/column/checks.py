@@ -30,8 +30,8 @@ def checks(study: ColumnStudy, ran: Sequence[FinishedRun]) -> list[Check]:
     counted = [one for one in ran if not plugin(TRANSFERS, one.run.transfer).filters_walls]
     asked: list[tuple[str, Sequence[FinishedRun], list[float], float, str]] = [
         (f"energy budget, largest residual {SHARE}", ran, [one.values["unbalanced"] for one in ran], BUDGET,
-         "every term is measured apart"),
-        (f"work of the law less that of its forces, {SHARE}", smooth, [one.values["misworked"] for one in smooth],
+         "sum of terms measured apart"),
+        (f"work of the material less that of its forces, {SHARE}", smooth, [one.values["misworked"] for one in smooth],
          BUDGET, "virtual work"),
         (f"plastic work, largest fall {SHARE}", smooth, [one.values["plastic_falls"] for one in smooth], BACK,
          "dissipation"),
@@ -40,10 +40,10 @@ def checks(study: ColumnStudy, ran: Sequence[FinishedRun]) -> list[Check]:
         ("mass at the nodes over that of the particles, less 1", ran, [one.values["most_mass_lost"] for one in ran],
          MASS, "partition of unity"),
         ("Courant number with the stiffness and speed of the moment", ran, [one.values["most_courant"] for one in ran],
-         STABLE, "a wave crosses a cell in a step or more"),
+         STABLE, "stability of the step"),
     ]  # fmt: skip
     rested = sum(one.values["on_grid"] <= AT_REST * float(one.curves["potential"][0]) for one in ran)
-    found = [Check("Runs", f"runs of {len(study.runs)} that came to rest", float(rested), float(study.finish),
+    found = [Check("Runs", f"runs at rest out of {len(study.runs)}", float(rested), float(study.finish),
                    "at least", "declared by the study")]  # fmt: skip
     way: Way = "at most"
     for name, runs, numbers, bound, source in asked:

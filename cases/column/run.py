@@ -1,28 +1,18 @@
 """What a run of the column is and gives: Run, ColumnResult and ColumnStudy, data for store and reports."""
 
-import hashlib
-import json
-from dataclasses import asdict, dataclass
-from functools import cache
+from dataclasses import dataclass, replace
 from math import inf, isqrt, sqrt
 from typing import ClassVar, Literal, get_args
 
 from mpm_verify.cases.harness.study import ResultRecord, RunRecord, Study, axis
-from mpm_verify.solver.plugins import MATERIALS, METHODS, SMOOTHINGS, TRANSFERS, load, split
-from mpm_verify.solver.sources import TOP, digest
+from mpm_verify.solver.plugins import MATERIALS, METHODS, SMOOTHINGS, TRANSFERS, label, load, split
 
 Start = Literal["none", "k0", "oedometric"]
 Wall = Literal["roller", "fixed"]
 MOST = 1000  # cells: 4 GB of grid
 STRIPS = 7  # of the width
 AT_REST = 1e-4  # kinetic energy of the grid, of the potential energy at first: a run below it rests
-PARTS = ("column/case", "column/run", "column/start", "column/measure", "harness/memory", "harness/study")
-
-
-@cache
-def sources_digest() -> str:
-    """Hash of every source that a stored number depends on."""
-    return digest([*TOP.glob("solver/**/*.py"), *(TOP / f"cases/{name}.py" for name in PARTS)])
+PLUGINS = {"method": METHODS, "law": MATERIALS, "transfer": TRANSFERS, "smoothing": SMOOTHINGS}
 
 
 @dataclass(frozen=True)
@@ -115,16 +105,16 @@ class ColumnRun(RunRecord):
         return round((self.channel * self.cells + 1) * ((self.aspect + 1) * self.cells + 1))
 
     def __str__(self) -> str:
-        parts = [self.method, f"cells={self.cells}", f"ppc={self.ppc}"]
+        parts = [label(self.method), f"cells={self.cells}", f"ppc={self.ppc}"]
         parts += [f"damping={self.damping:g}"] * bool(self.damping)
-        parts += [f"smoothing={self.smoothing}"] * (self.smoothing != "none")
+        parts += [f"smoothing={label(self.smoothing)}"] * (self.smoothing != "none")
         return ", ".join(parts)
 
     @property
     def digest(self) -> str:
-        """Name of the Result: hash of the parameters and of the sources, 16 hex digits. No damping is of no kind."""
-        same = {"case": self.case} | asdict(self) | ({} if self.damping else {"damping_kind": "local"})
-        return hashlib.sha256((json.dumps(same, sort_keys=True) + sources_digest()).encode()).hexdigest()[:16]
+        """Name of the Result, 16 hex digits. No damping is of no kind."""
+        same = self if self.damping else replace(self, damping_kind="local")
+        return same.named()
 
 
 @dataclass(frozen=True, kw_only=True)

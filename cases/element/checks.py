@@ -105,7 +105,9 @@ def returns(law: MohrCoulomb) -> list[Check]:
             sigma = np.array([*(trial[i] for i in order), 0.0])
             law.respond(law.constants(), sigma, none.copy(), np.zeros(len(law.memory)))
             worst = float(np.max([worst, *(abs(sigma[place] - exact[i]) for place, i in enumerate(order))]))
-        checks.append(Check("Returns", f"{region}: largest miss, zz in any place", worst, 0.0, "absolute", TABLE, 1e-8))
+        checks.append(
+            Check("Returns", f"{region}: largest miss, zz in any position", worst, 0.0, "absolute", TABLE, 1e-8)
+        )
     return checks
 
 

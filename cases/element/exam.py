@@ -1,20 +1,20 @@
 """`verify material`: element tests of one material as an Examination, with errors and orders in the strain step."""
 
-from collections.abc import Callable
-from dataclasses import asdict
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, replace
 from enum import StrEnum
 from typing import Any
 
 import numpy as np
 
-from mpm_verify.cases.element.checks import law_checks
 from mpm_verify.cases.element.drawn import drawn
-from mpm_verify.cases.element.paths import ElementTest
-from mpm_verify.cases.element.study import FINE, ROUND_OFF, ElementStudy, study
+from mpm_verify.cases.element.paths import PathSource
+from mpm_verify.cases.element.run import ElementRun
+from mpm_verify.cases.element.study import FINE, ROUND_OFF, ElementStudy
 from mpm_verify.cases.harness.checks import Check, Examination, Remark
-from mpm_verify.cases.harness.environment import environment
-from mpm_verify.solver._jit import use_threads
+from mpm_verify.cases.harness.study import Study
 from mpm_verify.solver.material.ubcsand import Ubcsand, out_of_range
+from mpm_verify.solver.plugins import split
 
 
 class ElementRemark(StrEnum):
@@ -40,6 +40,10 @@ class ElementRemark(StrEnum):
     AFTER_REVERSAL = "element.after_reversal"
     CORRELATION = "element.correlation"
     OUR_READING = "element.our_reading"
+    RATE_IDLE = "element.rate_idle"  # along a path of strains
+    PATH_READ = "element.path_read"  # columns of a file
+    PATH_ZERO = "element.path_zero"  # in every row, as in plane strain
+    PATH_UNUSED = "element.path_unused"
 
 
 def checks(law: Any, studied: ElementStudy) -> list[Check]:
@@ -47,7 +51,7 @@ def checks(law: Any, studied: ElementStudy) -> list[Check]:
     group, found = studied.test.title, []
     if studied.failed:
         at = f"step {studied.failed.step} of {studied.failed.steps}"
-        return [Check(group, f"end at {at}", float("nan"), 0.0, "absolute", "every step is solved")]
+        return [Check(group, f"early end, at {at}", float("nan"), 0.0, "absolute", "all steps solved")]
     finest = studied.errors[-1]
     if studied.truth is not None:
         second = 1e-6 * (1600 / studied.steps[-1]) ** 2  # what order 2 makes of 1e-6 in 1600 steps
@@ -58,22 +62,47 @@ def checks(law: Any, studied: ElementStudy) -> list[Check]:
     return found
 
 
-def examine(
-    specification: str, law: Any, tests: list[ElementTest], stress: float, steps: int, command: str
+def examination(
+    study: Study[ElementRun],
+    run: ElementRun,
+    law: Any,
+    studies: Sequence[ElementStudy],
+    known: Sequence[Check],
+    reads: Sequence[PathSource],
+    environment: dict[str, str],
+    before: str = "",
 ) -> Examination:
-    """All tests of one law; the law's own tables and closed forms are checked whatever tests are chosen."""
-    use_threads(1)  # four rows at a time
-    studies = [study(law, test, stress, steps) for test in tests]
-    found = [check for one in studies for check in checks(law, one)]
-    found += law_checks(law)
+    """Tests of one material, with what is known of it; `before` goes in front of the names of the parts."""
+    found = [*(check for one in studies for check in checks(law, one)), *known]
+    remarks = [*lead(law, studies, found), *rate_idle(run.material), *read(reads)]
+    remarks += [remark for one in studies for remark in notes(law, one)]
+    named = [replace(check, group=before + check.group) for check in found]
     return Examination(
-        f"material-{specification}", f"Element tests of {specification}", command,
-        tuple(lead(law, studies, found) + [remark for one in studies for remark in notes(law, one)]),
-        tuple(found), parameters(law, stress, steps), origins(law), environment(), drawn(law, studies, stress),
+        study.name, study.title, study.command, tuple(remarks), tuple(named), parameters(law, run.stress, run.steps),
+        origins(law), environment, drawn(law, list(studies), run.stress),
     )  # fmt: skip
 
 
-def lead(law: Any, studies: list[ElementStudy], found: list[Check]) -> list[Remark]:
+def rate_idle(specification: str) -> list[Remark]:
+    """A remark on an objective rate that is asked for, which no path of strains can tell from another."""
+    given = [item.removeprefix("rate=") for item in split(specification)[1].split(",") if item.startswith("rate=")]
+    return [Remark(ElementRemark.RATE_IDLE, {"rate": rate}) for rate in given]
+
+
+def read(sources: Sequence[PathSource]) -> list[Remark]:
+    """Remarks on what was read of a path's file, and what was not."""
+    found = []
+    for one in sources:
+        used, zero, unused = (", ".join(names) for names in (one.used, one.zero, one.unused))
+        found.append(Remark(ElementRemark.PATH_READ, {"file": one.name, "used": used, "largest": one.largest}))
+        if zero:
+            found.append(Remark(ElementRemark.PATH_ZERO, {"columns": zero}))
+        if unused:
+            found.append(Remark(ElementRemark.PATH_UNUSED, {"file": one.name, "columns": unused}))
+    return found
+
+
+def lead(law: Any, studies: Sequence[ElementStudy], found: Sequence[Check]) -> list[Remark]:
     """What came out: how many checks, which orders, what is exact."""
     missed = sum(check.outcome != "PASS" for check in found)
     counts = {"tests": len(studies), "checks": len(found), "missed": missed}

@@ -1,51 +1,225 @@
-"""A strain path from a CSV file, as an element test of which all strains are given."""
+"""A strain path from a CSV file, as an element test of which all strains are given.
+
+The header names the columns exx, eyy, and exy (of the tensor) or gxy = 2 exy, in any order and case, tension positive;
+`exx [%]` or `exx_pct` is in per cent. Columns stand between semicolons, tabs, commas or spaces, whichever the header
+has first in this order; a decimal comma is taken where commas do not separate. `#` begins a comment; where the first
+row is of numbers, the comment above it is the header.
+"""
 
 import csv
-from math import isfinite
+import re
+from collections import Counter
+from dataclasses import dataclass
 from pathlib import Path as File
+from typing import Literal, get_args
 
 import numpy as np
 
-from mpm_verify.cases.element.paths import XX, XY, YY, ElementTest
+from mpm_verify.cases.element.paths import XX, XY, YY, ElementTest, PathSource
+from mpm_verify.solver.state import Floats
 
-LARGEST = 10.0  # a strain beyond is a slip of the pen, or a percentage
+Units = Literal["percent", "fraction"]
+TAKEN = "exx, eyy, and exy or gxy = 2 exy"
+PLAUSIBLE, LARGEST = (
+    0.5,
+    10.0,
+)  # of a strain: beyond the first it may be a percentage, beyond the second it is no strain
+MARKS = ";\t,"
+BLANK = " \t,;\"'"
+UNITS = {
+    **dict.fromkeys(("%", "pct", "percent", "per cent", "per_cent"), "percent"),
+    **dict.fromkeys(("-", "1", "m/m", "mm/mm", "fraction"), "fraction"),
+    "": "",
+}
+UNIT = re.compile(r"(.*?)[\s_]*(?:[\[(<]\s*(.*?)\s*[\])>]|(?:in\s+|/\s*)?(%|pct|percent|per[ _]cent))")
+AXES = r"([xyz]{1,2}|[rtz]{2}|[123]{2})"
+STRAIN = re.compile(
+    rf"(d|log|ln|true|total)?[\s_]*(e|eps|epsilon|\u03b5|\u03f5|g|gam|gamma|\u03b3|strain)[\s_.]*{AXES}"
+)
+NO_PLANE = re.compile(r".*(z|3).?")  # the index of a strain that plane strain has not
+NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([edED][+-]?\d+)?", re.ASCII)
 
 
-def from_file(path: File) -> ElementTest:
-    """The strain path of a CSV file with the columns exx, eyy, exy (of the tensor) or gxy = 2 exy, tension positive.
+@dataclass(frozen=True)
+class Sheet:
+    """Columns by name and unit ("percent", "fraction", "" where none is said), and rows with the number of the line."""
+
+    path: File
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    rows: list[tuple[int, list[str]]]
+
+    def column(self, name: str, units: str) -> Floats:
+        """Strains (rows,) as fractions. Raises ValueError."""
+        at = self.names.index(name)
+        percent = (units or self.units[at]) == "percent"
+        known = bool(units or self.units[at])
+        return np.array([self.strain(line, name, cells[at], percent, known) for line, cells in self.rows])
+
+    def strain(self, line: int, name: str, cell: str, percent: bool, known: bool) -> float:
+        """A cell as a fraction; `known` says that its unit is stated. Raises ValueError for what is no strain."""
+        where = f"{self.path}, line {line}: {name}"
+        written = number(cell)
+        if not cell:
+            raise ValueError(f"{where} is empty; write a number in each row")
+        if written is None:
+            raise ValueError(f"{where} = {cell!r} must be a finite number")
+        percent, known = percent or cell.endswith("%"), known or cell.endswith("%")
+        value = written / (100.0 if percent else 1.0)
+        if abs(value) > PLAUSIBLE and not known:
+            meant = f"if it is meant as it is, --units fraction, up to {LARGEST:g}"
+            raise ValueError(f"{where} = {cell} is a large strain: in per cent? Then add --units percent; {meant}")
+        if not abs(value) <= LARGEST:
+            raise ValueError(f"{where} = {cell} is a strain of {value:g}, beyond {LARGEST:g}: no strain is so large")
+        return value
+
+
+def from_file(path: File, units: str = "") -> ElementTest:
+    """The strain path of a CSV file, see above; `units`, "percent" or "fraction", is that of all its strains.
 
     The first row is where it starts. Raises ValueError with one line for what cannot be a path.
     """
-    try:
-        with path.open(newline="", encoding="utf-8") as file:
-            rows = list(csv.DictReader(file, skipinitialspace=True))
-            names = tuple(name.strip() for name in (rows[0] if rows else {}) if name)
-    except OSError as error:
-        raise ValueError(f"{path}: {(error.strerror or str(error)).lower()}") from None
-    except (UnicodeDecodeError, csv.Error):
-        raise ValueError(f"{path} is no CSV text") from None
-    shear = "gxy" if "gxy" in names else "exy"
-    if not {"exx", "eyy", shear} <= set(names):
-        raise ValueError(f"{path} must have a header with exx, eyy and exy (or gxy = 2 exy), and rows below it")
-    points = [
-        [number(path, line, row, name) for name in ("exx", "eyy", shear)] for line, row in enumerate(rows, start=2)
-    ]
-    if len(points) < 2:
+    if units not in ("", *get_args(Units)):
+        raise ValueError(f"--units {units} must be one of {', '.join(get_args(Units))}")
+    sheet = read(path)
+    shear = check_names(sheet)
+    check_units(sheet, ("exx", "eyy", shear), units)
+    if len(sheet.rows) < 2:
         raise ValueError(f"{path} must have two rows of strains at least")
-    table = np.array(points) * (1.0, 1.0, 0.5 if shear == "gxy" else 1.0)
+    table = np.stack([sheet.column(name, units) for name in ("exx", "eyy", shear)], axis=1)
+    table *= (1.0, 1.0, 0.5 if shear == "gxy" else 1.0)
     if not np.ptp(table, axis=0).any():
         raise ValueError(f"{path} must have strains that change")
     sheared = bool(np.ptp(table[:, 2]) > np.ptp(table[:, :2], axis=0).max())
-    return ElementTest("path", f"strain path of {path.name}", (XX, YY, XY), 1.0, shear=sheared, points=table)
+    source = PathSource(path.name, ("exx", "eyy", shear), unused(sheet), zero(sheet), float(np.abs(table).max()))
+    return ElementTest(
+        "path", f"strain path of {path.name}", (XX, YY, XY), 1.0, shear=sheared, points=table, source=source
+    )
 
 
-def number(path: File, line: int, row: dict[str, str | None], name: str) -> float:
-    """A finite strain of one row."""
-    text = {(key or "").strip(): value for key, value in row.items()}.get(name)
+def read(path: File) -> Sheet:
+    """The file as columns and rows, none of them ragged. Raises ValueError."""
+    lines = content(decoded(path))
+    if not lines:
+        raise ValueError(f"{path} must have a header with {TAKEN}, and rows below it")
+    head = lines[0][1]
+    mark = next((mark for mark in MARKS if mark in head), " ")
     try:
-        value = float(text or "")
-    except ValueError:
-        raise ValueError(f"{path}, line {line}: {name} = {text!r} must be a number") from None
-    if not isfinite(value) or abs(value) > LARGEST:
-        raise ValueError(f"{path}, line {line}: {name} = {value} must be finite, and no percentage")
-    return value
+        first, *rows = [(line, split(text, mark)) for line, text in lines]
+    except csv.Error:
+        raise ValueError(f"{path} is no CSV text") from None
+    for line, cells in rows:
+        if len(cells) != len(first[1]):
+            comma = "; where a comma is the decimal sign, semicolons must separate" if mark == "," else ""
+            raise ValueError(f"{path}, line {line}: {len(cells)} cells, and the header has {len(first[1])}{comma}")
+    names, units = zip(*map(named, first[1]), strict=True)
+    return Sheet(path, names, units, rows)
+
+
+def decoded(path: File) -> str:
+    """Text of the file. Raises ValueError with what to save it as."""
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise ValueError(f"{path}: {(error.strerror or str(error)).lower()}") from None
+    if data[:2] in (b"\xff\xfe", b"\xfe\xff") or b"\0" in data[:1000]:
+        raise ValueError(f"{path} is UTF-16 text or no text; save it as CSV in UTF-8")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise ValueError(f"{path} is no CSV text in UTF-8; save it as CSV in UTF-8") from None
+
+
+def content(text: str) -> list[tuple[int, str]]:
+    """Lines that hold something, numbered from 1: the header first, which may be the last comment above numbers."""
+    kept, comment = [], (0, "")
+    for number, line in enumerate(re.split(r"\r\n|\r|\n", text), start=1):
+        bare, _, remark = line.partition("#")
+        if bare.strip(BLANK) and not re.fullmatch(r'"?sep=.?"?', bare.strip(" ")):  # what a spreadsheet writes first
+            kept.append((number, bare.strip(" ")))
+        elif remark and not kept:
+            comment = (number, remark.strip(" "))
+    numbers = kept and not re.search(r"[a-df-z]", kept[0][1], re.IGNORECASE)
+    return [comment, *kept] if numbers and comment[1] else kept
+
+
+def split(line: str, mark: str) -> list[str]:
+    """Cells of a line, without the spaces around them."""
+    if mark == " ":
+        return re.sub(r"\s+(?=[\[(<%])", "", line).split()
+    return [cell.strip() for cell in next(csv.reader([line], delimiter=mark, skipinitialspace=True))]
+
+
+def named(header: str) -> tuple[str, str]:
+    """Name and unit of a column, in lower case; the unit as UNITS has it, or as it is written."""
+    text = header.strip(BLANK).lower()
+    found = UNIT.fullmatch(text)
+    unit = "" if found is None else (found[3] if found[2] is None else found[2])
+    return text if found is None else found[1], UNITS.get(unit, unit)
+
+
+def number(cell: str) -> float | None:
+    """The number in a cell, the sign of per cent left out; None where there is none."""
+    text = cell.removesuffix("%").strip().replace("\N{MINUS SIGN}", "-")
+    text = text if "." in text else text.replace(",", ".")
+    return float(text.lower().replace("d", "e")) if NUMBER.fullmatch(text) else None
+
+
+def check_names(sheet: Sheet) -> str:
+    """The name of the shear column, exy or gxy. Raises ValueError unless the strains are there, once, and no others."""
+    path, names = sheet.path, sheet.names
+    if {"exy", "gxy"} <= set(names):
+        raise ValueError(f"{path} has both exy and gxy = 2 exy; leave one out")
+    shear = "gxy" if "gxy" in names else "exy"
+    if not {"exx", "eyy", shear} <= set(names):
+        raise ValueError(
+            f"{path} must have a header with {TAKEN}, and rows below it; its first line has {', '.join(names)[:60]}"
+        )
+    twice = [name for name, count in Counter(names).items() if count > 1 and name]
+    if twice:
+        raise ValueError(f"{path} has two columns {twice[0]}; leave one out")
+    strange = [name for name in names if STRAIN.fullmatch(name) and name not in ("exx", "eyy", shear)]
+    for name in strange:
+        if name not in zero(sheet):
+            raise ValueError(
+                f"{path}: the strain {name} would not be used: taken are {TAKEN}; plane strain has ezz = 0, and no "
+                f"strain out of the plane; leave the column out, or rename it if it is no strain"
+            )
+    return shear
+
+
+def check_units(sheet: Sheet, used: tuple[str, ...], units: str) -> None:
+    """Raise ValueError for a unit that is not known, that contradicts --units, or that only some strains have."""
+    said = {name: unit for name, unit in zip(sheet.names, sheet.units, strict=True) if name in used}
+    for name, unit in said.items():
+        if unit not in ("", *get_args(Units)):
+            raise ValueError(f"{sheet.path}: {name} is in {unit}; strains are taken in [%] or as fractions [-]")
+        if units and unit not in ("", units):
+            raise ValueError(f"{sheet.path}: {name} is in {unit} by its header, not in {units}; leave --units out")
+    if "percent" in said.values() and "" in said.values() and not units:
+        bare = next(name for name, unit in said.items() if not unit)
+        raise ValueError(
+            f"{sheet.path}: other strains are in per cent, and {bare} has no unit; write {bare} [%] or [-]"
+        )
+
+
+def zero(sheet: Sheet) -> tuple[str, ...]:
+    """Strains out of the plane that are zero in every row: they say what plane strain says."""
+    out = []
+    for at, name in enumerate(sheet.names):
+        found = STRAIN.fullmatch(name)
+        if found and NO_PLANE.fullmatch(found[3]) and all(number(cells[at]) == 0 for _, cells in sheet.rows):
+            out.append(name)
+    return tuple(out)
+
+
+def unused(sheet: Sheet) -> tuple[str, ...]:
+    """Columns that are no strains, by name or number; one without name and content is nobody's."""
+    kept = []
+    for at, name in enumerate(sheet.names):
+        if name not in ("exx", "eyy", "exy", "gxy") and not STRAIN.fullmatch(name):
+            if name:
+                kept.append(name)
+            elif any(cells[at] for _, cells in sheet.rows):
+                kept.append(f"column {at + 1} without a name")
+    return tuple(kept)

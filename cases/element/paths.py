@@ -1,8 +1,7 @@
 """The element tests as data: of each three conditions on strains and stresses, and how far it goes.
 
 A strain condition gives the increment of a combination of xx, yy, xy (tensor), a stress condition holds one where it
-was. Compression is along y. A strain path of one's own
-comes from a CSV file (element_csv.py).
+was. Compression is along y. A strain path of one's own comes from a CSV file (path_file.py).
 """
 
 from collections.abc import Callable
@@ -42,6 +41,18 @@ def held(*weights: float) -> Condition:
 
 
 @dataclass(frozen=True)
+class PathSource:
+    """What a path's file held: columns that are `used`, that are no strains, and strains out of the plane that are
+    `zero` in every row; `largest` is the largest strain component."""
+
+    name: str
+    used: tuple[str, ...]
+    unused: tuple[str, ...] = ()
+    zero: tuple[str, ...] = ()
+    largest: float = 0.0
+
+
+@dataclass(frozen=True)
 class ElementTest:
     """`length` of the path in strain; `shear`: its curves are of xy; `closed`: the volume in the plane is kept;
     `cyclic`: to either side CYCLES times and back to the middle; `loose`: it starts at this share of the stress."""
@@ -55,6 +66,7 @@ class ElementTest:
     cyclic: bool = False
     loose: float = 1.0
     points: Floats = field(default_factory=lambda: np.zeros((0, 3)), compare=False)  # of a path from a file
+    source: PathSource | None = field(default=None, compare=False)
 
     @property
     def legs(self) -> int:

@@ -50,7 +50,7 @@ def union(
     case = parts[0].contract
     runs: list[RunRecord] = []
     plans: list[QuantityPlan[Any]] = []
-    for part in parts:
+    for part in (one for whole in parts for one in case.parts(whole)):
         more, declared = _runs(part)
         runs += more
         plans += declared
@@ -101,7 +101,7 @@ def _runs(asked: Asked) -> tuple[tuple[Any, ...], list[QuantityPlan[Any]]]:
         make(case, {**points[-1], "courant": courant})  # says what is wrong with it
     case.check(runs)
     if not (case.quantities and refines(case.Run)):
-        return runs, []
+        return tuple(dict.fromkeys(case.companions(runs))), []
     plans = [plan for one in {head(run): run for run in reversed(runs)}.values() for plan in declare(case, one)]
     rank = {head(run): place for place, run in reversed(list(enumerate(runs)))}
     plans.sort(key=lambda plan: rank[plan.head])

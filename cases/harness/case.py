@@ -8,6 +8,7 @@ and, where they apply, instead of the defaults of Case:
     AXES             values of the axes that are not asked for, by field
     QUANTITIES, NORMS, JUDGED, expectation      what the order rule is asked, see cases/harness/build.py
     canonical        (values) -> values: one name for one thing
+    parts, companions, multiple                 see Case
     check            (runs): raises ValueError with one line for what cannot be run
     examine          (study, results, store) -> Analysis: checks of what is stored
 """
@@ -77,6 +78,16 @@ class Case:
     def multiple(self) -> Callable[[RunRecord], int]:
         """Number whose multiples are the cells that fit the body of a run."""
         return getattr(self.module, "multiple", lambda run: 1)
+
+    @property
+    def parts(self) -> Callable[[Any], Sequence[Any]]:
+        """What is asked for (build.Asked) in parts, where what nobody asked for depends on what was."""
+        return getattr(self.module, "parts", lambda asked: [asked])
+
+    @property
+    def companions(self) -> Callable[[Sequence[RunRecord]], Sequence[RunRecord]]:
+        """The runs with those that each of them is held against."""
+        return getattr(self.module, "companions", lambda runs: runs)
 
     @property
     def canonical(self) -> Callable[[dict[str, Any]], dict[str, Any]]:

@@ -1,39 +1,16 @@
-"""An examination: curves that were computed of one thing, and numbers of them that are held against what is known.
+"""Checks: numbers held against what is known; and what a case examined, with curves to draw and remarks."""
 
-DIR/examination.json   the Examination without its curves
-DIR/curves.npz         each column of each curve as `curve/column`
-"""
-
-import io
-import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field
 from math import isfinite
-from pathlib import Path
 from typing import Any, Literal
-from zipfile import BadZipFile
 
-import numpy as np
-from pydantic import TypeAdapter, ValidationError
-
-from mpm_verify.cases.harness.store import Store, StoreError, make
 from mpm_verify.cases.judging.records import Outcome
 from mpm_verify.solver.failure import Failure
 from mpm_verify.solver.state import Floats
 
-FORMAT = 2
 Way = Literal["relative", "absolute", "at least", "at most"]
 Curves = dict[str, dict[str, Floats]]
-BROKEN = (
-    OSError,
-    EOFError,
-    ValueError,
-    AttributeError,
-    RecursionError,
-    NotImplementedError,
-    ValidationError,
-    BadZipFile,
-)
 
 
 @dataclass(frozen=True)
@@ -99,7 +76,6 @@ class Examination:
     origins: dict[str, str] = field(default_factory=dict)
     environment: dict[str, str] = field(default_factory=dict)
     curves: dict[str, Any] = field(default_factory=dict, compare=False)  # Curves; pydantic knows no arrays
-    format: int = FORMAT
 
     @property
     def outcome(self) -> Outcome:
@@ -113,36 +89,3 @@ class Examination:
         """Names of the parts, in their order."""
         noted = [finding.group for finding in self.findings if finding.group]
         return tuple(dict.fromkeys([*(check.group for check in self.checks), *noted]))
-
-
-ADAPTER: TypeAdapter[Examination] = TypeAdapter(Examination)
-
-
-def save(folder: Path, examination: Examination) -> None:
-    """Write both files, curves first, each atomically. Raises StoreError."""
-    columns = {f"{name}/{key}": values for name, curve in examination.curves.items() for key, values in curve.items()}
-    buffer = io.BytesIO()
-    np.savez(buffer, allow_pickle=False, **columns)
-    text = json.dumps(asdict(replace(examination, curves={})), indent=1)
-    make(folder)
-    Store.write(folder / "curves.npz", buffer.getvalue())
-    Store.write(folder / "examination.json", text.encode())
-
-
-def load(folder: Path) -> Examination:
-    """The examination that a folder holds. Raises StoreError."""
-    path = folder / "examination.json"
-    try:
-        data: Any = json.loads(path.read_bytes())
-        if data.get("format") != FORMAT:
-            raise StoreError(f"{path} has format {data.get('format')}, this version reads {FORMAT}")
-        with (folder / "curves.npz").open("rb") as file, np.load(file, allow_pickle=False) as stored:
-            curves: Curves = {}
-            for key in stored.files:
-                name, _, column = key.rpartition("/")
-                curves.setdefault(name, {})[column] = stored[key]
-        return replace(ADAPTER.validate_python(data), curves=curves)
-    except FileNotFoundError as error:
-        raise StoreError(f"{folder} holds no examination: {Path(error.filename).name} is missing") from error
-    except BROKEN as error:
-        raise StoreError(f"{path} or its curves are broken and were left as they are; run it again") from error

@@ -6,7 +6,7 @@ from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-from mpm_verify.solver.sources import TOP
+from mpm_verify.solver.source_hash import TOP
 
 PACKAGES = ("mpm-verify", "numpy", "numba", "llvmlite", "sympy", "scipy")
 

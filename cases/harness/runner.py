@@ -41,14 +41,29 @@ def pending(study: Study, store: Store) -> list[Run]:
     return sorted((run for digest, run in once.items() if store.get(digest) is None), key=cost, reverse=True)
 
 
-def perform(run: Run, folder: Path, threads: int) -> Result:
-    """One run, in whichever process this is, to its place in the store. Memory that does not suffice is not stored."""
+def perform(run: Run, digest: str, folder: Path, threads: int) -> Result:
+    """One run, in whichever process this is, to its place in the store. Memory that does not suffice is not stored.
+
+    Raises RunnerError where a user's file does not return what it did when the run was named `digest`, before or after.
+    """
     from mpm_verify.solver._jit import use_threads
 
     use_threads(threads)
-    result, arrays = case_named(run.case).execute(run, Ticker(run.digest))
+    if run.digest != digest:
+        raise another(run)
+    result, arrays = case_named(run.case).execute(run, Ticker(digest))
+    if result.digest != digest:
+        raise another(run)
     Store(folder, run.case).put(result, arrays)
     return result
+
+
+def another(run: Run) -> RunnerError:
+    """The reason not to store a run."""
+    return RunnerError(
+        f"what computes {run} is not what it was when the study began: a file was changed, or returns something else "
+        "each time it is read; make it return the same and start again; stored runs are kept"
+    )
 
 
 class Ticker:
@@ -81,7 +96,7 @@ def run_study(
     `done` hears of each new Result, `poll` is called a few times a second. Raises RunnerError where a worker dies,
     StoreError where a Result cannot be written; what is stored stays.
     """
-    waiting = {executor.submit(perform, run, store.folder, threads): run for run in pending(study, store)}
+    waiting = {executor.submit(perform, run, run.digest, store.folder, threads): run for run in pending(study, store)}
     lost: list[tuple[Run, Exception]] = []
     try:
         while waiting:
@@ -91,7 +106,7 @@ def run_study(
                 run = waiting.pop(future)
                 try:
                     done(future.result())
-                except (StoreError, BrokenProcessPool, MemoryError):
+                except (StoreError, RunnerError, BrokenProcessPool, MemoryError):
                     raise
                 except Exception as error:  # a defect of ours in one run: the sweep goes on, and says so at its end
                     lost.append((run, error))

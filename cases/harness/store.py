@@ -22,10 +22,9 @@ import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
 from mpm_verify.cases.harness.case import adapters
-from mpm_verify.cases.harness.study import FORMAT
+from mpm_verify.cases.harness.study import FORMAT, Arrays
 from mpm_verify.solver.plugins import CASES, available
 
-Arrays = dict[str, "np.ndarray[Any, np.dtype[Any]]"]
 HOUR = 3600.0
 BROKEN = "{} is broken and was left as it is; move it away, and what it held is made again"
 

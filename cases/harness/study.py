@@ -4,16 +4,19 @@ A case adds its own fields: its Run is a frozen dataclass below RunRecord whose 
 have, its Result one below ResultRecord (see cases/harness/case.py).
 """
 
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import dataclass, field, fields
 from math import inf
 from typing import Any, ClassVar, Generic, Literal, TypeVar
 
+from mpm_verify.cases.harness.identity import digest
 from mpm_verify.cases.judging.records import Expectation
 from mpm_verify.solver.failure import Failure
+from mpm_verify.solver.plugins import parameters_of
 
 FORMAT = 2  # of study.json and of every Result; a reader refuses another number
 REFINED = ("cells", "courant", "offset")  # fields in which the runs of one refinement differ
 Status = Literal["finished", "failed"]
+Arrays = dict[str, Any]  # arrays of a run by name
 Head = tuple[tuple[str, Any], ...]  # names and values of all other fields of a Run: what a refinement is of
 
 
@@ -30,8 +33,13 @@ class RunRecord:
 
     @property
     def digest(self) -> str:
-        """Name of the Result: hash of the parameters and of the sources that compute, 16 hex digits."""
-        raise NotImplementedError
+        """Name of the Result: hash of the parameters and of all that computes the run, 16 hex digits."""
+        return self.named()
+
+    def named(self, more: str = "") -> str:
+        """The digest; `more` is what else a run depends on."""
+        packages = {item.name: item.metadata["plugins"] for item in fields(self) if item.metadata.get("plugins")}
+        return digest(self, packages, more)
 
     @property
     def cost(self) -> float:
@@ -151,4 +159,4 @@ def without(name: str, of: Head) -> Head:
 
 def parameters(kind: str, plugin: Any) -> dict[str, float | str]:
     """Every parameter of a plug-in, the defaults too, each named after its kind."""
-    return {f"{kind} {key}": value for key, value in asdict(plugin).items()}
+    return {f"{kind} {key}": getattr(plugin, item.name) for key, item in parameters_of(plugin).items()}

@@ -88,7 +88,9 @@ class Quantity:
             return Wanted(action, h)
         cells = max(1, round(1 / h / self.multiple)) * self.multiple
         if action is Action.ADD_LEVEL:
-            counts.append(cells if h >= self.ordered[-1].h else max(cells, counts[-1] + self.multiple))
+            finer = (counts[-1] // self.multiple + 1) * self.multiple
+            cells = cells if h >= self.ordered[-1].h else max(cells, finer)
+            counts.append(cells)
         if action is Action.REPLACE_FINEST:
             counts = [n for n in (cells, *counts[:-1]) if n >= LEAST_CELLS]
         return Wanted(action, 1 / cells if action is Action.ADD_LEVEL else h, tuple(sorted(set(counts))))

@@ -179,4 +179,4 @@ class Verdict:
     reason: Reason
     local_orders: tuple[float, ...] = ()
     window: tuple[int, int] | None = None
-    contamination: Contamination | None = None
+    contamination: "Contamination | None" = None

@@ -3,45 +3,36 @@
 The contract of a case is told in cases/harness/case.py.
 """
 
-import time
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from functools import cache
-from math import ceil, sqrt
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
-import numpy as np
-
-from mpm_verify.cases.harness.environment import environment
-from mpm_verify.cases.harness.memory import forget_peak, peak_memory
-from mpm_verify.cases.harness.progress import Progress
-from mpm_verify.cases.harness.store import Arrays
-from mpm_verify.cases.harness.study import parameters
+from mpm_verify.cases.harness.build import Asked
 from mpm_verify.cases.judging.records import Expectation
+from mpm_verify.cases.mms.execute import execute
 from mpm_verify.cases.mms.expectations import JUDGED_QUANTITY, expected
-from mpm_verify.cases.mms.gaps import LOOKS, Gaps
-from mpm_verify.cases.mms.norms import Norms, compare, new_shares
-from mpm_verify.cases.mms.packing import Packing
 from mpm_verify.cases.mms.run import AXES, NORMS, QUANTITIES, QUICK, Result, Run
-from mpm_verify.mms.audit import audit
-from mpm_verify.mms.blind_spots import BlindSpot
+from mpm_verify.cases.mms.time_step import check_time_steps
+from mpm_verify.mms.cells import fitting, ratio
 from mpm_verify.mms.energy import check_energy
-from mpm_verify.mms.manufacture import Manufactured, manufacture
-from mpm_verify.solver.boundary import box, moving
-from mpm_verify.solver.failure import Failure, FailureKind, RunFailed
-from mpm_verify.solver.layout import CENTRED, Layout, parallelograms
-from mpm_verify.solver.plugins import LAYOUTS, MATERIALS, METHODS, SOLUTIONS, TRANSFERS, create, is_file, load
+from mpm_verify.solver.plugins import (
+    LAYOUTS,
+    MATERIALS,
+    METHODS,
+    SOLUTIONS,
+    TRANSFERS,
+    create,
+    is_file,
+    label,
+    load,
+)
 from mpm_verify.solver.plugins import canonical as canonical_name
-from mpm_verify.solver.state import Floats, Grid, Particles
-from mpm_verify.solver.step import Model, Scheme, advance, check_time_step
 from mpm_verify.solver.stress_update import check_stress_update
 
 __all__ = ["AXES", "JUDGED", "NORMS", "QUANTITIES", "QUICK", "Result", "Run", "execute"]
 
 JUDGED = (JUDGED_QUANTITY,)
 SCHEME = {"transfer": "flip", "stress": "usl", "layout": "uniform"}  # of which expectations are registered
-PIECE = 4096  # particles
-COUNTED = 40_000  # particles: the outline of a uniform layout with more takes as long as the run's first steps
 
 
 def title(runs: Sequence[Run]) -> str:
@@ -49,7 +40,7 @@ def title(runs: Sequence[Run]) -> str:
     methods, solutions = (tuple(dict.fromkeys(getattr(run, key) for run in runs)) for key in ("method", "solution"))
     named = " and ".join(m.upper() for m in methods) if len(methods) < 4 else f"{len(methods)} methods"
     several = "solutions" if len(solutions) > 1 else "solution"
-    return f"{named} against the manufactured {several} {', '.join(solutions)}"
+    return f"{named} against the manufactured {several} {', '.join(map(label, solutions))}"
 
 
 def canonical(values: dict[str, Any]) -> dict[str, Any]:
@@ -76,16 +67,27 @@ def check(runs: Sequence[Run]) -> None:
             from mpm_verify.mms.check import check as check_solution  # derives the fields: some tenths of a second
 
             check_solution(solution, material, tuple(sorted(counts)))
+        mine = [run for run in runs if (run.solution, run.material) == (specification, model) and not run.force]
+        if mine:
+            check_time_steps(specification, solution, material, mine, sorted({run.courant for run in mine}))
+
+
+def parts(asked: Asked) -> list[Asked]:
+    """The same asked for with cells that fill the body of each solution, where no cells were asked for."""
+    solutions = asked.values.get("solution", (Run.solution,))
+    if "cells" in asked.values or not any(is_file(one) for one in solutions):
+        return [asked]
+    usual = (QUICK if asked.quick else AXES)["cells"]
+    return [
+        replace(asked, values={**asked.values, "solution": (one,), "cells": fitting(create(SOLUTIONS, one), usual)})
+        for one in solutions
+    ]
 
 
 def multiple(run: Run) -> int:
     """Number of cells of the width whose multiples fill the body; 1 for those of this package, which are square."""
-    if not is_file(run.solution):
-        return 1
-    from mpm_verify.mms.check import sides  # see check
-
-    ratio = sides(create(SOLUTIONS, run.solution))
-    return ratio.denominator if ratio else 1
+    sides = ratio(create(SOLUTIONS, run.solution)) if is_file(run.solution) else None
+    return sides.denominator if sides else 1
 
 
 def expectation(run: Run, quantity: str, norm: str) -> Expectation | None:
@@ -94,182 +96,3 @@ def expectation(run: Run, quantity: str, norm: str) -> Expectation | None:
         return None
     usual = run.courant == Run.courant and run.staggered
     return expected(run.method, run.solution, run.material, run.ppc, quantity, norm, usual)
-
-
-@dataclass
-class Comparison:
-    """Body force and errors from one call of the exact kernel: it gives both at the time that x, F and sigma have."""
-
-    exact: Manufactured
-    norms: Norms
-    gaps: Gaps
-    packing: Packing | None
-    shares: Floats
-    behind: float  # how far v is behind x in time
-
-    def __call__(self, particles: Particles, t: float) -> None:
-        """Write particles.b at time t; add the errors of that time to the norms, the start left out."""
-        scalars = self.exact.kernel.scalars(t, t - self.behind)
-        compare(
-            self.exact.kernel.fill, particles.carried, scalars, particles.X, particles.x, particles.v, particles.F,
-            particles.sigma, particles.V0, particles.b, self.shares,
-        )  # fmt: skip
-        if t > 0:
-            self.norms.add(self.shares)
-
-
-def setup(run: Run) -> tuple[Model, Comparison, int]:
-    """Model at t = 0, what compares it with the exact solution, and the number of steps.
-
-    dt = courant dx / C, shortened so that whole steps fill the duration. x, F and sigma start exact, v exact at -dt/2.
-    """
-    solution: Any = create(SOLUTIONS, run.solution)
-    material: Any = create(MATERIALS, run.material)
-    dx = width(solution) / run.cells
-    below, above = dx * np.ceil(np.broadcast_to(solution.margin, (2, 2)) / dx)
-    free = solution.boundary == "free"  # no wall ties the grid to the body: the offset moves the grid
-    shift = -dx * np.array(run.offset) if free else np.zeros(2)
-    grid = Grid(dx, solution.lower - below + shift, solution.upper + above + shift)
-    steps = ceil(solution.duration / (run.courant * grid.dx / solution.C) * (1 - 1e-12))
-    dt = solution.duration / steps
-    behind = 0.5 * dt if run.staggered else 0.0
-
-    exact, basis = manufactured(run.solution, run.material), load(METHODS, run.method)()
-    layout = laid_out(run, solution, exact)
-    particles, X = basis.populate(layout, material.rho0, lambda places: exact.x(places, 0.0)), layout.X
-    particles.x, particles.v = exact.x(X, 0.0), exact.v(X, -behind)
-    particles.F, particles.sigma = exact.F(X, 0.0), exact.sigma(X, 0.0)
-    particles.carried = exact.kernel.columns(X)
-    transfer, stress = create(TRANSFERS, run.transfer), run.stress
-    scheme = Scheme(transfer, stress, run.staggered)
-    walls = moving(grid, solution.walls) if solution.boundary == "moving" else box(grid, solution.boundary)
-    model = Model(grid, particles, basis, material, walls, dt, scheme)
-    transfer.start(model, lambda X: velocity_gradient(exact, X, -behind, 1e-3 * dt))
-    every = max(1, steps // LOOKS)
-    packing = Packing(exact, layout, dx, every) if run.layout != "uniform" or len(layout) <= COUNTED else None
-    norms, gaps = Norms(len(particles), float(particles.V0.mean())), Gaps(layout, every)
-    return model, Comparison(exact, norms, gaps, packing, new_shares(particles), behind), steps
-
-
-def laid_out(run: Run, solution: Any, exact: Manufactured) -> Layout:
-    """Where the particles of the run lie; of a free body the offset moves the grid instead."""
-    offset = CENTRED if solution.boundary == "free" else run.offset
-    layout: Layout = create(LAYOUTS, run.layout)(solution, exact, width(solution) / run.cells, run.ppc, offset)
-    return layout
-
-
-def velocity_gradient(exact: Manufactured, X: Floats, t: float, short: float) -> Floats:
-    """L = dF/dt F^-1 (P,2,2), by the central difference of the exact F over the times t - short and t + short."""
-    rate = (exact.F(X, t + short) - exact.F(X, t - short)) / (2 * short)
-    L: Floats = rate @ np.linalg.inv(exact.F(X, t))
-    return L
-
-
-def width(solution: Any) -> float:
-    """Extent along x, the one that cells are counted along."""
-    return float(solution.upper[0] - solution.lower[0])
-
-
-@cache
-def manufactured(solution: str, material: str) -> Manufactured:
-    """The exact solution of two specifications, derived and compiled once in a process."""
-    law: Any = create(MATERIALS, material)
-    return manufacture(create(SOLUTIONS, solution), law, law.rho0)
-
-
-@cache
-def audited(solution: str, material: str) -> tuple[BlindSpot, ...]:
-    """The auditor's findings on two specifications, once in a process."""
-    return audit(manufactured(solution, material), create(SOLUTIONS, solution), create(MATERIALS, material)).spots
-
-
-def execute(run: Run, tick: Callable[[float], None] = lambda share: None) -> tuple[Result, Arrays]:
-    """Run to the end, or to where it cannot go on: a failed run is a Result. `tick` hears the share that is done."""
-    forget_peak()
-    model, comparison, steps = setup(run)
-    model.watch(comparison.gaps, *filter(None, [comparison.packing]), Progress(tick, steps))
-    failure, started, used = None, time.perf_counter(), time.process_time()
-    try:
-        if not run.force:
-            check_time_step(model)
-        if comparison.packing:
-            comparison.packing.begin(model, refuse=run.layout != "uniform")
-        for _ in range(steps):
-            advance(model, comparison)
-        comparison(model.particles, model.time)
-    except RunFailed as ended:
-        failure = ended.failure
-    wall, cpu = time.perf_counter() - started, time.process_time() - used
-    errors, scale = comparison.norms.errors(), magnitude(comparison.exact, model.particles, steps * model.dt)
-    if not failure and not np.isfinite([list(norms.values()) for norms in errors.values()]).all():
-        failure = Failure(FailureKind.ERROR_NOT_FINITE, model.steps)
-    arrays = snapshot(run, model, comparison)
-    result = Result(
-        run=run,
-        digest=run.digest,
-        status="failed" if failure else "finished",
-        errors={} if failure else errors,
-        steps=model.steps,
-        particles=len(model.particles),
-        dt=model.dt,
-        wall_s=wall,
-        cpu_s=cpu,
-        crossings=model.crossings,
-        gap=comparison.gaps.most,
-        packed=comparison.packing.packed if comparison.packing else None,
-        audit=audited(run.solution, run.material),
-        peak_memory_mb=peak_memory(),
-        scale=scale,
-        floor={} if failure else round_off(scale, model),
-        failure=failure,
-        environment=environment(),
-        parameters=parameters("solution", create(SOLUTIONS, run.solution))
-        | parameters("material", create(MATERIALS, run.material)),
-    )
-    return result, arrays
-
-
-def magnitude(exact: Manufactured, particles: Particles, duration: float) -> dict[str, float]:
-    """rms of the exact quantities, from some thousand places and sixteen times; by volume, as the errors are."""
-    step = max(1, len(particles) // 1000)
-    some, volume = particles.X[::step], particles.V0[::step, None] / particles.V0[::step].mean()
-    times = duration * (np.arange(16) + 0.5) / 16
-    fields = {"u": exact.u, "v": exact.v, "F": exact.F, "sigma": exact.sigma}
-    weight = {"sigma": np.array([1.0, 1.0, 1.0, 2.0])}
-    squares = {
-        q: np.mean([np.sum(volume * (weight.get(q, 1.0) * f(some, t) ** 2).reshape(len(some), -1)) for t in times])
-        / len(some)
-        for q, f in fields.items()
-    }
-    return {quantity: sqrt(square) for quantity, square in squares.items()}
-
-
-def round_off(scale: dict[str, float], model: Model) -> dict[str, float]:
-    """Round-off floor: half a digit of the largest number involved, in a random walk over the steps.
-
-    u is the difference of places of size L, and F of numbers near one; v and sigma have the size of their exact values.
-    """
-    walk = np.finfo(float).eps * sqrt(max(1, model.steps))
-    size = {**scale, "u": float(np.ptp(model.particles.X)), "F": 1.0}
-    return {quantity: float(walk * size[quantity]) for quantity in QUANTITIES}
-
-
-def snapshot(run: Run, model: Model, comparison: Comparison) -> Arrays:
-    """The particles at the last step in the initial order, float32, for figures; points are drawn as if with CPDI.
-
-    Piece by piece: in double precision and at once, it would be the peak of the run's memory.
-    """
-    p, count = model.particles, len(model.particles)
-    shapes: dict[str, tuple[int, ...]] = {"X": (2,), "x": (2,), "F": (2, 2), "corners": (4, 2), "error_u": ()}
-    arrays = {name: np.empty((count, *shape), np.float32) for name, shape in shapes.items()}
-    known = model.basis.corners(p.x[:1], p.F[:1], p.domain[:1], model.grid.dx) is not None
-    r0 = None if known else laid_out(run, create(SOLUTIONS, run.solution), comparison.exact).r0
-    for rows in (slice(lo, lo + PIECE) for lo in range(0, count, PIECE)):
-        X, x, F, place = p.X[rows], p.x[rows], p.F[rows], p.id[rows]
-        corners = model.basis.corners(x, F, p.domain[rows], model.grid.dx)
-        if corners is None and r0 is not None:
-            corners = parallelograms(x, np.einsum("pab,psb->psa", F, r0[place]))
-        error = np.hypot(*(x - comparison.exact.x(X, model.time)).T)
-        for name, values in {"X": X, "x": x, "F": F, "corners": corners, "error_u": error}.items():
-            arrays[name][place] = values
-    return arrays

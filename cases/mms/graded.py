@@ -14,6 +14,7 @@ from typing import Any
 from mpm_verify.cases.harness.build import Asked, union
 from mpm_verify.cases.harness.study import Study
 from mpm_verify.cases.mms.run import Result, Run
+from mpm_verify.solver.plugins import label
 
 Results = Mapping[str, Result]
 Point = tuple[float, float]  # cost, error
@@ -47,7 +48,7 @@ def build_graded(plan: Plan, command: str, name: str) -> Study[Any]:
         for solution in plan.solutions
         for layout, ppc in (("uniform", plan.ppc), *((layout, dense) for layout in spread))
     ]  # fmt: skip
-    title = f"Uniform and graded layouts of particles on {' and '.join(plan.solutions)}"
+    title = f"Uniform and graded layouts of particles on {' and '.join(map(label, plan.solutions))}"
     study = union(parts, command, name, title)
     runs = tuple(run for run in study.runs if run.courant == Run.courant)
     return replace(study, runs=runs, plans=tuple(replace(one, judged=False) for one in study.plans))

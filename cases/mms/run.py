@@ -1,33 +1,17 @@
 """What a run of the MMS case is and gives: Run and Result, data for store, rule and reports."""
 
 from dataclasses import dataclass, field
-from functools import cache
-from hashlib import sha256
-from json import dumps
 from math import inf, isqrt
 from typing import ClassVar
 
 from mpm_verify.cases.harness.study import ResultRecord, RunRecord, axis
 from mpm_verify.mms.blind_spots import BlindSpot
-from mpm_verify.solver.plugins import LAYOUTS, MATERIALS, METHODS, SOLUTIONS, TRANSFERS, identity
-from mpm_verify.solver.sources import TOP, digest
+from mpm_verify.solver.plugins import LAYOUTS, MATERIALS, METHODS, SOLUTIONS, TRANSFERS, label
 
 QUANTITIES = ("u", "v", "F", "sigma")
 NORMS = ("rms", "max", "final", "printed")
 AXES = {"cells": (8, 16, 32, 64, 128), "ppc": (1, 4, 9)}  # values that nobody asks for; of the rest the defaults
 QUICK = {"cells": (8, 12, 16, 24, 32), "ppc": (4,)}
-
-
-@cache
-def sources_digest() -> str:
-    """Hash of every source that a stored number depends on: the solver, the derivation, the norms and the case."""
-    files = [
-        *TOP.glob("solver/**/*.py"),
-        *TOP.glob("mms/**/*.py"),
-        *(TOP / f"cases/mms/{name}.py" for name in ("case", "run", "norms", "gaps", "packing")),
-        TOP / "cases/harness/memory.py",
-    ]
-    return digest(files)
 
 
 @dataclass(frozen=True)
@@ -90,18 +74,7 @@ class Run(RunRecord):
         return (self.cells + 1) ** 2
 
     def __str__(self) -> str:
-        return f"{self.method} {self.cells}² cells, {self.ppc} per cell"
-
-    @property
-    def digest(self) -> str:
-        """Name of the Result, 16 hex digits."""
-        return _digest(self, sources_digest())
-
-
-@cache
-def _digest(run: Run, sources: str) -> str:
-    values = {name: getattr(run, name) for name in run.__dataclass_fields__} | {"solution": identity(run.solution)}
-    return sha256((dumps(values, sort_keys=True) + sources).encode()).hexdigest()[:16]
+        return f"{label(self.method)} {self.cells}² cells, {self.ppc} per cell"
 
 
 @dataclass(frozen=True)

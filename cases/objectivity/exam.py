@@ -1,76 +1,56 @@
 """`verify objectivity`: everything about frame indifference that needs no soil, as one Examination."""
 
-from concurrent.futures import Executor
+from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
 from mpm_verify.cases.harness.checks import Check, Curves, Examination
-from mpm_verify.cases.harness.environment import environment
+from mpm_verify.cases.harness.study import ResultRecord, Study
 from mpm_verify.cases.objectivity import block as full
 from mpm_verify.cases.objectivity import rates as kinematic
-from mpm_verify.cases.objectivity.exact import SIMPLE_SHEAR, ramped_column
-from mpm_verify.cases.objectivity.findings import CONTROLS, ObjectivityRemark, findings
-from mpm_verify.cases.objectivity.turning_block import Block
-from mpm_verify.solver.plugins import NEGATIVE_CONTROLS, RATES, available
-from mpm_verify.solver.state import Floats
-
-MISS = 0.1  # of the stress: what a negative control has to miss by
-COARSE = 4  # steps of the stretched turn at which a control of first order is told from a rate
+from mpm_verify.cases.objectivity.axes import KINEMATIC, Block
+from mpm_verify.cases.objectivity.exact import ramped_column
+from mpm_verify.cases.objectivity.findings import ObjectivityRemark, findings
+from mpm_verify.solver.plugins import NEGATIVE_CONTROLS, available
 
 
-def examine(block: Block, executor: Executor, command: str) -> Examination:
-    """All parts; the runs go to the executor, and the rest is done meanwhile."""
-    waiting = full.start(block, executor)
-    rates = (*available(RATES), *available(NEGATIVE_CONTROLS))
-    errors = {name: kinematic.order_errors(name) for name in rates}
-    controls = {name: kinematic.figure2(block, name) for name in available(NEGATIVE_CONTROLS)}
-    checks = [*kinematic.figure2_checks(block), *kinematic.order_checks(errors), *kinematic.shear_checks()]
-    found = {name: future.result() for name, future in waiting.items()}
-    checks = [*full.checks(block, found), *checks, *control_checks()]
-    kept = curves(block, found, errors, controls)
+def examination(
+    study: Study[Block],
+    block: Block,
+    results: Mapping[str, ResultRecord[Block]],
+    arrays: Mapping[str, Curves],
+    before: str = "",
+) -> Examination:
+    """All parts of one block by their names; `before` goes in front of the names of the groups of checks."""
+    found = {name: (arrays[name], results[name].failure) for name in arrays if name != KINEMATIC}
+    kept = curves(block, found, arrays[KINEMATIC])
+    known: tuple[Check, ...] = results[KINEMATIC].checks  # type: ignore[attr-defined]
+    checks = [*full.checks(block, found), *known]
+    errors = {name[7:]: curve["error"] for name, curve in kept.items() if name.startswith("errors/")}
     return Examination(
-        "objectivity",
-        "Frame indifference of the paper's rotated block",
-        command,
+        study.name,
+        study.title,
+        study.command,
         tuple(findings(block, checks, kept, errors)),
-        tuple(checks),
+        tuple(replace(check, group=before + check.group) for check in checks),
         parameters(block),
         ORIGINS,
-        environment(),
+        results[KINEMATIC].environment,
         kept,
     )
 
 
-def control_checks() -> list[Check]:
-    """In few steps along the stretched turn every negative control misses by a tenth of the stress, and no rate
-    does."""
-    checks = []
-    for name in (*available(NEGATIVE_CONTROLS), *available(RATES)):
-        miss = float(kinematic.order_errors(name, (COARSE,))[0])
-        wrong = name in available(NEGATIVE_CONTROLS)
-        source = "a control has to be seen" if wrong else "a rate must not look like one"
-        what = f"{name}: miss after {COARSE} steps"
-        checks.append(Check(CONTROLS, what, miss, MISS, "at least" if wrong else "at most", source))
-    return checks
-
-
-def curves(block: Block, found: full.Found, errors: dict[str, Floats], controls: Curves) -> Curves:
+def curves(block: Block, found: full.Found, prescribed: Curves) -> Curves:
     """What the page draws."""
-    exact = kinematic.exact_figure2(block, np.linspace(0, 2, 401))
-    kept: Curves = {"exact": exact}
+    kept: Curves = {"exact": kinematic.exact_figure2(block, np.linspace(0, 2, 401))}
     kept |= {f"run/{name}": run["mean"] for name, (run, _) in found.items() if run["mean"]["t"].size}
     t = np.linspace(0, 1, 201)
     kept["wave"] = {"t": t, "yy": ramped_column(t, block.law.wave_speed(), block.L)}
     kept |= {f"field/{name}": run["field"] for name, (run, _) in found.items()}
-    kept |= {f"figure2/{name}": curve for name, curve in controls.items()}
-    right = available(RATES)
-    for name, error in errors.items():
-        kept[f"errors/{name}"] = {
-            "steps": np.array(kinematic.STEPS, float),
-            "error": error,
-            "right": np.full(len(error), float(name in right)),
-        }
-    for name, curve in controls.items():
+    kept |= prescribed
+    for name in available(NEGATIVE_CONTROLS):
+        curve = prescribed[f"figure2/{name}"]
         away = max(
             float(np.abs(curve[c] - kinematic.exact_figure2(block, curve["t"])[c]).max()) for c in ("xx", "yy", "xy")
         )
@@ -79,15 +59,8 @@ def curves(block: Block, found: full.Found, errors: dict[str, Floats], controls:
         kept[f"control/{name}"] = {
             "kinematic": np.array([away]),
             "run": np.array([miss]),
-            "stretched": errors[name][-1:],
+            "stretched": prescribed[f"errors/{name}"]["error"][-1:],
         }
-    gamma = np.linspace(0, 8, 161)
-    marks = np.linspace(0, 8, 17)[1:]
-    for name in right:
-        stress = SIMPLE_SHEAR[name](gamma)
-        kept[f"shear/{name}"] = {"gamma": gamma, "s11": stress[:, 0], "s12": stress[:, 2]}
-        law_path = np.array([kinematic.simple_shear(name, g, int(50 * g)) for g in marks])
-        kept[f"computed/{name}"] = {"gamma": marks, "s11": law_path[:, 0], "s12": law_path[:, 1]}
     return kept
 
 

@@ -10,9 +10,10 @@ import numpy as np
 
 from mpm_verify.cases.harness.checks import Check, Curves, Remark
 from mpm_verify.cases.objectivity import block as full
+from mpm_verify.cases.objectivity.axes import Block
 from mpm_verify.cases.objectivity.exact import SIMPLE_SHEAR
 from mpm_verify.cases.objectivity.rates import ORDERS, SHEAR, slope
-from mpm_verify.cases.objectivity.turning_block import RAMP, Block
+from mpm_verify.cases.objectivity.turning_block import RAMP
 from mpm_verify.solver.plugins import RATES, available
 from mpm_verify.solver.state import Floats
 
@@ -49,7 +50,7 @@ class ObjectivityRemark(StrEnum):
 def findings(block: Block, checks: list[Check], curves: Curves, errors: Mapping[str, Floats]) -> list[Remark]:
     """What came out; notes on the CPDI runs only where all three came to their end."""
     unseen = [name for name, curve in of_controls(curves).items() if curve["kinematic"][0] < UNSEEN]
-    found = [lead(checks, curves, unseen)]
+    found = [lead(block, checks, curves, unseen)]
     names = [f"run/{name}" for name in (full.PRINTED, full.SMALL, full.REST)]
     if all(name in curves for name in names):
         found += of_runs(block, *(curves[name] for name in names))
@@ -61,13 +62,19 @@ def of_controls(curves: Curves) -> Curves:
     return {name.partition("/")[2]: curve for name, curve in curves.items() if name.startswith("control/")}
 
 
-def lead(checks: list[Check], curves: Curves, unseen: list[str]) -> Remark:
+def lead(block: Block, checks: list[Check], curves: Curves, unseen: list[str]) -> Remark:
     """How many checks missed; where none did, the largest shear stress and which controls Figure 2 does not see."""
     missed = sum(check.outcome != "PASS" for check in checks)
     if missed:
         return Remark(ObjectivityRemark.MISSED, {"missed": missed, "checks": len(checks)})
     peak, controls = float(curves[f"run/{full.SMALL}"]["xy"].max()), len(of_controls(curves))
-    return Remark(ObjectivityRemark.TURNS, {"peak": peak, "controls": controls, "unseen": len(unseen)})
+    numbers = {"peak": peak, "exact": largest_shear(block), "controls": controls, "unseen": len(unseen)}
+    return Remark(ObjectivityRemark.TURNS, numbers)
+
+
+def largest_shear(block: Block) -> float:
+    """Shear stress of the closed form at 45 degrees."""
+    return 0.5 * (1 - block.nu / (1 - block.nu))
 
 
 def of_runs(block: Block, printed: Curve, small: Curve, rest: Curve) -> list[Remark]:
@@ -80,10 +87,9 @@ def of_runs(block: Block, printed: Curve, small: Curve, rest: Curve) -> list[Rem
         name: float(curve["own_yy"][late[name]].mean()) + 1
         for name, curve in (("printed", printed), ("rest", rest), ("small", small))
     }
-    exact = 0.5 * (1 - block.nu / (1 - block.nu))
     inertia = {"L": block.L, "fraction": block.share, "small_fraction": block.share / 100, **away}
     return [
-        Remark(ObjectivityRemark.SWAP, {"exact": exact, "peak": float(small["xy"].max())}, full.GROUP),
+        Remark(ObjectivityRemark.SWAP, {"exact": largest_shear(block), "peak": float(small["xy"].max())}, full.GROUP),
         Remark(ObjectivityRemark.CO_ROTATED,
                {"early": float(own[:quarter].max()), "end": float(own[-quarter:].max())}, full.GROUP),
         Remark(ObjectivityRemark.INERTIA, inertia, INERTIA),

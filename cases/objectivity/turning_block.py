@@ -13,69 +13,25 @@ With `frame` nothing turns: the same box at rest feels the inertial forces of th
 That run shows the inertial fraction alone, without any rotation of stress.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from math import ceil, pi
+from math import ceil
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mpm_verify.cases.harness.checks import Curves
+from mpm_verify.cases.objectivity.axes import OMEGA, Block
 from mpm_verify.solver._jit import use_threads
 from mpm_verify.solver.basis.cpdi import Cpdi
 from mpm_verify.solver.boundary import moving
 from mpm_verify.solver.failure import Failure, RunFailed
-from mpm_verify.solver.layout import per_side, rectangle
-from mpm_verify.solver.material.hypoelastic import Hypoelastic
+from mpm_verify.solver.layout import rectangle
 from mpm_verify.solver.state import Floats, Grid, Particles
 from mpm_verify.solver.step import Model, advance
 
-OMEGA = pi / 2  # a quarter turn in a second
 SAMPLES = 200  # of each stage, at most
 RAMP = 1.0
-
-
-@dataclass(frozen=True)
-class Block:
-    """E, nu as in the paper; the density, which it does not give, is that of its Table 1, g that of its section 3.
-
-    Raises ValueError for a number of cells or particles per cell that no block has.
-    """
-
-    L: float = 1.0
-    E: float = 500e3
-    nu: float = 0.3
-    rho0: float = 2650.0
-    g: float = 10.0
-    cells: int = 8
-    ppc: int = 4
-    courant: float = 0.4
-    rate: str = "green_naghdi"
-    frame: bool = False
-
-    def __post_init__(self) -> None:
-        per_side(self.ppc)
-        if not 4 <= self.cells <= 128:
-            raise ValueError(f"{self.cells} cells along the block must be from 4 to 128: its walls are a cell thick")
-
-    @property
-    def law(self) -> Hypoelastic:
-        """The paper's linear elastic law."""
-        return Hypoelastic(E=self.E, nu=self.nu, rho0=self.rho0, rate=self.rate)
-
-    @property
-    def steps(self) -> int:
-        """Of each second."""
-        return ceil(self.law.wave_speed() / (self.courant * self.L / self.cells))
-
-    @property
-    def sigma_v(self) -> float:
-        """Mean vertical stress at the end of the ramp, -rho0 g L / 2."""
-        return -self.rho0 * self.g * self.L / 2
-
-    @property
-    def share(self) -> float:
-        """Inertial fraction w^2 L / g."""
-        return OMEGA**2 * self.L / self.g
 
 
 def turn(angle: float) -> Floats:
@@ -159,7 +115,7 @@ def spin(model: Model, block: Block) -> None:
     model.particles.v += (model.particles.x - block.L / 2) @ back.T / model.dt
 
 
-def execute(block: Block) -> tuple[Curves, Failure | None]:
+def execute(block: Block, tick: Callable[[float], None] = lambda fraction: None) -> tuple[Curves, Failure | None]:
     """Curves of a run, and why it ended early if it did; stresses in units of |sigma_v|.
 
     `mean`: t, angle, means over the particles xx, yy, zz, xy, in the frame of the box own_xx, own_yy, own_xy, and
@@ -175,6 +131,7 @@ def execute(block: Block) -> tuple[Curves, Failure | None]:
             if step == block.steps + 1 and not block.frame:
                 spin(model, block)
             advance(model, load)
+            tick(step / (2 * block.steps))
             if step % every == 0 or step % block.steps == 0:
                 own = in_box(model, block)
                 rows.append(row(model, block, own))

@@ -6,22 +6,26 @@
 
 `domain` may also name a "material" (neo_hookean if not), a "boundary": fixed, roller, free, or four of them for left,
 right, bottom, top (without it the boundary is found, see mms/edges.py), and the "order" that is expected of u.
-Arguments with a number as default, in either function, are parameters: path/to/own.py:A=0.02. The file is executed as
-a program is: run none that you do not trust.
+Arguments with a number as default, in either function, are parameters, whatever their names: path/to/own.py:A=0.02.
+A file without these functions may hold a class instead, as those of the library. The file is executed as a program is:
+run none that you do not trust.
 """
 
 import inspect
-import traceback
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import make_dataclass
+from dataclasses import field, make_dataclass
 from functools import cache, cached_property
 from pathlib import Path
+from types import ModuleType
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from mpm_verify.solver.layout import CENTRED, Layout, Offset, rectangle
-from mpm_verify.solver.plugins import source
+from mpm_verify.solver.own_file import derived as file_derived
+from mpm_verify.solver.own_file import guarded, module_of, shortened
+from mpm_verify.solver.plugins import SOLUTIONS, own_class, parameters_of
+from mpm_verify.solver.state import Floats
 
 if TYPE_CHECKING:
     import sympy as sp
@@ -29,6 +33,8 @@ if TYPE_CHECKING:
 ARGUMENTS = {"displacement": ["X", "t"], "domain": []}
 NEEDED, OPTIONAL = {"lower", "upper", "duration", "speed"}, {"material", "boundary", "order"}
 KINDS = ("fixed", "roller", "free")
+HUGE = 1e30  # a larger number of domain() overflows on the way
+NO_NUMBERS = (str, bytes, bool, np.bool_, complex, np.complexfloating, np.ndarray)  # though float() takes some of them
 ROOM = 0.25  # of the largest displacement: how much further than the exact one a free edge may move
 
 
@@ -45,12 +51,13 @@ class Own:
         self.named()
 
     def displacement(self, X: Sequence["sp.Symbol"], t: "sp.Symbol") -> "sp.Matrix":
-        """u of the reference place X and the time t; two expressions in X, Y and t."""
+        """u of the reference position X and the time t; two expressions in X, Y and t."""
         import sympy as sp
 
         value = self.call("displacement", tuple(X), t)
         u = list(value) if isinstance(value, sp.MatrixBase | list | tuple) else None
-        if u is None or len(u) != 2 or not all(isinstance(e, sp.Expr | int | float) for e in u):
+        kinds = [isinstance(e, sp.Expr | int | float) and not isinstance(e, bool) for e in u or ()]
+        if u is None or len(u) != 2 or not all(kinds):
             raise ValueError(f"{self.path}: displacement must return sp.Matrix([u_x, u_y]), not {shortened(value)}")
         u = [sp.sympify(e) for e in u]
         unknown = set().union(*(e.free_symbols for e in u)) - {*X, t}
@@ -68,48 +75,57 @@ class Own:
         )
         if not isinstance(domain, dict) or not NEEDED <= set(domain) <= NEEDED | OPTIONAL:
             raise ValueError(f"{self.path}: domain returns {shortened(domain)}; {words}")
-        box = {}
-        for name in ("lower", "upper"):
-            box[name] = np.array([self.number(name, value) for value in np.atleast_1d(domain[name])])
-            if box[name].shape != (2,):
-                raise ValueError(f"{self.path}: domain has {name} = {shortened(domain[name])}; write two numbers")
+        box = {name: self.corner(name, domain[name]) for name in ("lower", "upper")}
         if not (box["upper"] > box["lower"]).all():
             raise ValueError(f"{self.path}: domain has upper = {domain['upper']}, not above lower = {domain['lower']}")
         sizes = {n: self.number(n, domain[n]) for n in ("duration", "speed", "order") if n in domain}
         for name, value in sizes.items():
             if value <= 0:
                 raise ValueError(f"{self.path}: domain has {name} = {value:g}, which must be above zero")
-        return {**domain, **box, **sizes}
+        material = domain.get("material", "neo_hookean")
+        if not isinstance(material, str) or not material:
+            raise ValueError(
+                f"{self.path}: domain has material = {shortened(material)}; write a name with its parameters, such as "
+                "'neo_hookean:E=1e4,nu=0.3'"
+            )
+        return {**domain, **box, **sizes, "material": material}
 
     def named(self) -> tuple[str, ...] | None:
         """The boundary that domain() names, one a side; None where it names none."""
         named = self.domain.get("boundary")
         if named is None:
             return None
-        sides = (named,) * 4 if isinstance(named, str) else named
-        if not isinstance(sides, tuple | list) or len(sides) != 4 or not all(kind in KINDS for kind in sides):
+        sides = tuple(named) if isinstance(named, tuple | list) else (named,) * 4
+        if len(sides) != 4 or not all(isinstance(kind, str) and kind in KINDS for kind in sides):
             choices = ", ".join(KINDS)
             raise ValueError(
                 f"{self.path}: domain has boundary = {shortened(named)}; write one of {choices}, or four of them for "
                 "left, right, bottom, top"
             )
-        return tuple(sides)
+        return sides
+
+    def corner(self, name: str, value: Any) -> Floats:
+        """A corner (2,) of domain()."""
+        several = isinstance(value, tuple | list) or (isinstance(value, np.ndarray) and value.ndim > 0)
+        if not several or len(value) != 2:
+            raise ValueError(f"{self.path}: domain has {name} = {shortened(value)}; write two numbers")
+        return np.array([self.number(name, one) for one in value])
 
     def number(self, name: str, value: Any) -> float:
-        """A finite number of domain()."""
+        """A finite number of domain(); a word that looks like one is none."""
         try:
-            number = float(value)
-        except (TypeError, ValueError):
+            number = np.nan if isinstance(value, NO_NUMBERS) else float(value)
+        except (TypeError, ValueError, OverflowError):
             number = np.nan
-        if not np.isfinite(number):
-            raise ValueError(f"{self.path}: domain has {name} = {shortened(value)}, which is no finite number")
+        if not abs(number) < HUGE:
+            raise ValueError(f"{self.path}: domain has {name} = {shortened(repr(value))}, which is no finite number")
         return number
 
     lower = property(lambda self: self.domain["lower"])
     upper = property(lambda self: self.domain["upper"])
     duration = property(lambda self: self.domain["duration"])
     C = property(lambda self: self.domain["speed"])
-    material = property(lambda self: self.domain.get("material", "neo_hookean"))
+    material = property(lambda self: self.domain["material"])
     order = property(lambda self: self.domain.get("order"))
 
     @property
@@ -151,19 +167,30 @@ class Own:
         return rectangle(self.lower, self.upper, dx, ppc, offset)
 
     def call(self, name: str, *arguments: Any) -> Any:
-        """A function of the file, with those parameters that it has."""
-        function = self.functions[name]
-        mine = {key: getattr(self, key) for key in parameters(self.path, name, function)}
-        return guarded(self.path, lambda: function(*arguments, **mine))
+        """What a function of the file returns with those parameters that it has; asked for once a process."""
+        return called(self, name, arguments)
 
 
 @cache
-def load(path: Path) -> type[Own]:
-    """The class that a file makes; executed once a process. Raises ValueError with one line and the file's line."""
-    text = source(path)
-    namespace: dict[str, Any] = {"__name__": path.stem, "__file__": str(path)}
-    guarded(path, lambda: exec(compile(text, str(path), "exec"), namespace))
-    functions = {name: namespace.get(name) for name in ARGUMENTS}
+def called(solution: Own, name: str, arguments: tuple[Any, ...]) -> Any:
+    """What a function of the file returns."""
+    function = solution.functions[name]
+    typed = parameters_of(type(solution))
+    mine = {key: getattr(solution, typed[key].name) for key in parameters(solution.path, name, function)}
+    return guarded(solution.path, lambda: function(*arguments, **mine))
+
+
+def load(path: Path) -> type:
+    """The class that a file makes. Raises ValueError with one line and the file's line."""
+    return made(path, module_of(path))
+
+
+@cache
+def made(path: Path, module: ModuleType) -> type:
+    """The class of a module: of its two functions, or that which it holds. Raises ValueError."""
+    functions = {name: vars(module).get(name) for name in ARGUMENTS}
+    if not any(functions.values()) and any(isinstance(c, type) for c in vars(module).values()):
+        return completed(path, own_class(SOLUTIONS, path))
     for name, function in functions.items():
         if not inspect.isfunction(function):
             raise ValueError(f"{path} has no function {name}({', '.join(ARGUMENTS[name])})")
@@ -172,8 +199,41 @@ def load(path: Path) -> type[Own]:
         for key, value in parameters(path, name, function).items():
             if found.setdefault(key, value) != value:
                 raise ValueError(f"{path}: {key} is {found[key]:g} in displacement and {value:g} in {name}")
-    items = [(key, float, value) for key, value in sorted(found.items())]
+    items = [(spared(key), float, field(default=v, metadata={"typed": key})) for key, v in sorted(found.items())]
     return make_dataclass("Own", items, bases=(Own,), frozen=True, namespace={"path": path, "functions": functions})
+
+
+def completed(path: Path, plugin: Any) -> type:
+    """A class of a user's file, with what checks ask for besides; its displacement is asked for once a process."""
+    plugin.path = path
+    plugin.order = getattr(plugin, "order", None)
+    if plugin.__hash__:
+        plugin.displacement = cache(plugin.displacement)
+    chosen: type = plugin
+    return chosen
+
+
+def sides(solution: Any) -> tuple[str, ...]:
+    """Kinds of left, right, bottom, top of a solution of either form."""
+    if isinstance(solution, Own):
+        return solution.sides
+    boundary = solution.boundary
+    return (boundary,) * 4 if isinstance(boundary, str) else tuple(boundary)
+
+
+def derived(solution: Any) -> str:
+    """What a user's solution returns, as text: u in X, Y and t, and all numbers and words that a run takes from it.
+
+    Of a class, which may compute what it likes, its file counts too.
+    """
+    import sympy as sp
+
+    u = solution.displacement(sp.symbols("X Y", real=True), sp.Symbol("t", real=True))
+    names = ("lower", "upper", "duration", "C", "material")
+    values = [np.asarray(getattr(solution, name)).tolist() for name in names]
+    if isinstance(solution, Own):
+        return repr((sp.srepr(sp.Matrix(u)), values, solution.named()))
+    return repr((sp.srepr(sp.Matrix(u)), values, solution.boundary, file_derived(solution.path)))
 
 
 def parameters(path: Path, name: str, function: Any) -> dict[str, float]:
@@ -184,25 +244,14 @@ def parameters(path: Path, name: str, function: Any) -> dict[str, float]:
     if len(fixed) < count or any(p.default is not p.empty for p in fixed):
         raise ValueError(f"{path}: {name} must take ({', '.join(ARGUMENTS[name])}) and parameters with defaults")
     for p in rest:
-        if not isinstance(p.default, int | float) or hasattr(Own, p.name):
-            raise ValueError(f"{path}: {name} has the parameter {p.name}, which needs a number as default, and a name "
-                             "other than those that a solution has")  # fmt: skip
+        if isinstance(p.default, bool) or not isinstance(p.default, int | float) or not abs(p.default) < HUGE:
+            raise ValueError(
+                f"{path}: {name} has the parameter {p.name}, which needs a number as default, such as {p.name}=1.0"
+            )
     return {p.name: float(p.default) for p in rest}
 
 
-def guarded(path: Path, action: Callable[[], Any]) -> Any:
-    """Whatever the user's code raises becomes one line with the line of the file."""
-    try:
-        return action()
-    except SyntaxError as error:
-        raise ValueError(f"{path}, line {error.lineno}: {error.msg}") from None
-    except (Exception, SystemExit) as error:
-        frames = [f.lineno for f in traceback.extract_tb(error.__traceback__) if f.filename == str(path)]
-        where = f"{path}, line {frames[-1]}" if frames else str(path)
-        raise ValueError(f"{where}: {type(error).__name__}: {shortened(str(error))}") from error
-
-
-def shortened(value: Any) -> str:
-    """One line of at most 100 characters."""
-    text = " ".join((value if isinstance(value, str) else repr(value)).split())
-    return text if len(text) <= 100 else f"{text[:97]}..."
+def spared(parameter: str) -> str:
+    """Name of the field of a parameter: its own, unless a solution has an attribute of that name, such as C."""
+    taken = hasattr(Own, parameter) or parameter in Own.__annotations__
+    return f"parameter_{parameter}" if taken else parameter

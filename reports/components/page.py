@@ -1,6 +1,7 @@
 """What every page is made of: the templates, and figures that stand inside it as SVG data."""
 
 import base64
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -36,6 +37,7 @@ def adder(folder: Path, end: str = "", kinds: Sequence[str] = ("svg", "pdf", "pn
     """A function that saves a figure under a name and gives it as an Image; its halves are saved as SVG alone."""
 
     def add(name: str, figure: Figure, alt: str) -> Image:
+        name = re.sub(r"[^A-Za-z0-9_.=-]+", "_", name)
         svg = style.save(figure, folder, name + end, ("svg",) if name.startswith("figure1_") else kinds)
         width, height = (round(96 * inches) for inches in figure.get_size_inches())
         return Image(name + end, "data:image/svg+xml;base64," + base64.b64encode(svg).decode(), alt, width, height)

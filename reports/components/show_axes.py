@@ -7,6 +7,7 @@ from mpm_verify.cases.judging.fit import Fit
 from mpm_verify.reports import words
 from mpm_verify.reports.components.show import Table
 from mpm_verify.reports.frames import Record
+from mpm_verify.solver.plugins import label
 
 CONFIDENCE = 0.95
 ARROW = "→"
@@ -40,7 +41,7 @@ def particles(record: Record) -> Table:
     for a in axes:
         errors = dict(zip(a.ppc, a.errors, strict=True))
         orders = dict(zip(pairwise(a.ppc), a.orders, strict=True))
-        name = words.method(a.run.method) + (f", {a.run.solution}" if len(record.solutions) > 1 else "")
+        name = words.method(a.run.method) + (f", {label(a.run.solution)}" if len(record.solutions) > 1 else "")
         cells = (words.sci(errors.get(count)) for count in counts)
         rows.append((name, words.cell_size(a.run.cells), *cells, *(words.order(orders.get(pair)) for pair in pairs)))
     head = [f"{count} per cell" for count in counts] + [f"order {a} {ARROW} {b}" for a, b in pairs]

@@ -7,6 +7,7 @@ from mpm_verify.reports.figures import style
 from mpm_verify.reports.figures.convergence import methods
 from mpm_verify.reports.figures.cost import Line, Row
 from mpm_verify.reports.frames import Record
+from mpm_verify.solver.plugins import label
 
 
 def figure_rows(record: Record) -> list[Row]:
@@ -17,15 +18,15 @@ def figure_rows(record: Record) -> list[Row]:
         lines = []
         for s in (s for s in record.series if s.first.solution == solution):
             look = style.look(methods(record), s.first.method, s.first.ppc)
-            label = words.series(s.first) if several else words.method(s.first.method)
-            lines.append(Line(label, s.runs, look.plot))
-        rows.append(Row(solution, lines))
+            name = words.series(s.first) if several else words.method(s.first.method)
+            lines.append(Line(name, s.runs, look.plot))
+        rows.append(Row(label(solution), lines))
     return rows
 
 
 def overview(record: Record) -> Table:
     """The table for a paper: a row a method, a column a solution, the last local order of u and the relative error."""
-    head = ("method", "per cell", *record.solutions)
+    head = ("method", "per cell", *map(label, record.solutions))
     found = {(f.plan.run.method, f.plan.run.ppc, f.plan.run.solution): f for f in record.findings if _is_u(f)}
     keys = list(dict.fromkeys((s.first.method, s.first.ppc) for s in record.series))
     rows = tuple(

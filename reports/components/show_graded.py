@@ -7,6 +7,7 @@ from mpm_verify.cases.mms.run import Run
 from mpm_verify.reports import words
 from mpm_verify.reports.components.show import Table
 from mpm_verify.reports.frames import Record
+from mpm_verify.solver.plugins import label
 
 COLUMNS = (
     "solution", "method", "layout", "per cell", "cells", "particles", "fewest", "error", "particles x", "error x",
@@ -42,7 +43,7 @@ def table(record: Record, quantity: str = "u") -> list[tuple[str, ...]]:
 def row(record: Record, run: Run, saving: Saving | None, quantity: str) -> tuple[str, ...]:
     """One run; a failed one by its reason."""
     result, error = record.result(run), record.error(run, quantity, "rms")
-    head = (run.solution, words.method(run.method), kind(run), str(run.ppc), str(run.cells))
+    head = (label(run.solution), words.method(run.method), kind(run), str(run.ppc), str(run.cells))
     if result is None:
         return (*head, *[words.DASH] * 3, *[""] * 4)
     fewest = result.packed.fewest if result.packed else None
@@ -81,7 +82,7 @@ def overview(record: Record) -> Table:
 
 def summed(solution: str, method: str, layout: str, quantity: str, found: list[Saving]) -> tuple[str, ...]:
     """One row of the overview."""
-    head = (solution, words.method(method), layout, words.quantity(quantity))
+    head = (label(solution), words.method(method), layout, words.quantity(quantity))
     share = [s.particles for s in found if s.particles is not None]
     ratio = [s.errors for s in found if s.errors is not None]
     if not ratio:

@@ -1,7 +1,7 @@
 """The tables of the runs: how each ended, with what parameters, on what machine."""
 
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 
 from mpm_verify.cases.harness.axes import crossed
 from mpm_verify.cases.mms.run import Run
@@ -9,6 +9,7 @@ from mpm_verify.reports import words
 from mpm_verify.reports.components.show import Row, Table
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences import failures
+from mpm_verify.solver.plugins import is_file, label, split
 
 
 def runs(record: Record) -> Table:
@@ -29,7 +30,8 @@ def parameters(record: Record) -> Table:
     for run in record.study.runs:
         result = record.result(run)
         ends = (words.sci(result.dt), result.digest) if result else (words.DASH, run.digest)
-        rows.append((*(_text(value) for value in asdict(run).values()), *ends))
+        values = {**asdict(run), "solution": label(run.solution)}
+        rows.append((*(_text(value) for value in values.values()), *ends))
     return Table(
         "Parameters of every run",
         (*names, "dt", "name of the result"),
@@ -40,8 +42,14 @@ def parameters(record: Record) -> Table:
 
 
 def problem(record: Record) -> Table:
-    """Every parameter of solution and material, the defaults too, with the number of runs that it holds for."""
-    return _shared(record, "parameters", "The problem")
+    """Every parameter of solution and material, the defaults too, with the number of runs that it holds for.
+
+    A user's file stands here by its whole path, once.
+    """
+    files = sorted({split(name)[0] for name in record.solutions if is_file(name)})
+    found = _shared(record, "parameters", "The problem")
+    rows = tuple(("solution file", file, f"solution {label(file)}") for file in files)
+    return replace(found, rows=(*rows, *found.rows))
 
 
 def environment(record: Record) -> Table:
@@ -70,7 +78,7 @@ def _with_solution(record: Record, row: Sequence[str], run: Run | None = None) -
     """A column for the solution where there is more than one."""
     if len(record.solutions) < 2:
         return tuple(row)
-    return (*row, run.solution if run else "solution")
+    return (*row, label(run.solution) if run else "solution")
 
 
 def _run(record: Record, run: Run) -> Row:

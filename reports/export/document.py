@@ -124,7 +124,7 @@ class RunRow:
     reason: str
     errors: dict[str, dict[str, float]] | None
     values: dict[str, float | None]
-    steps: int
+    time_steps: int
     particles: int
     crossings: int
     gap: float | None

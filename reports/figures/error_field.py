@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 from numpy.typing import NDArray
 
-from mpm_verify.cases.harness.store import Arrays
+from mpm_verify.cases.harness.study import Arrays
 from mpm_verify.cases.mms.run import Run
 from mpm_verify.reports import words
 from mpm_verify.reports.figures import style
@@ -32,7 +32,7 @@ def choose(record: Record, method: str, solution: str, cells: int = CELLS, ppc: 
 def domains(arrays: Arrays) -> NDArray[np.float64]:
     """Corners (P,4,2) at the last step. Older results have r0[p,0], r0[p,1], half side vectors at t = 0, instead."""
     if "corners" in arrays:
-        return arrays["corners"].astype(float)
+        return np.asarray(arrays["corners"], float)
     r = np.einsum("pij,pkj->pki", arrays["F"].astype(float), arrays["r0"].astype(float))
     corners: NDArray[np.float64] = arrays["x"].astype(float)[:, None, :] + np.einsum("ck,pki->pci", CORNERS, r)
     return corners

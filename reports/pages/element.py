@@ -6,17 +6,19 @@ from pathlib import Path
 import numpy as np
 
 from mpm_verify.cases.harness.checks import Curves, Examination
-from mpm_verify.reports.components.examined import Section, checks_table, render
+from mpm_verify.reports.components.examined import Section, checks_table
+from mpm_verify.reports.components.examined_study import page as examined_page
 from mpm_verify.reports.components.page import Add, Image
 from mpm_verify.reports.components.show import Table
 from mpm_verify.reports.figures import element as draw
+from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences.remarks import notes
 from mpm_verify.reports.words import order, sci
 
 
-def page(folder: Path, examination: Examination) -> Path:
-    """Write the page; its path. Raises StoreError."""
-    return render(folder, examination, sections, ("svg", "pdf"))  # some two dozen figures: PNG takes half the time
+def page(record: Record, vtk: bool = False) -> Path:
+    """Write the page; its path. There are no snapshots, whatever `vtk` says. Raises StoreError."""
+    return examined_page(record, sections, ("svg", "pdf"))  # some two dozen figures: PNG takes half the time
 
 
 def sections(examination: Examination, add: Add) -> Sequence[Section]:
@@ -64,7 +66,7 @@ def test(examination: Examination, name: str, title: str, add: Add) -> Section:
         images.append((add(f"{name}_volume", volume, f"{title}: volume strain."), "Volume strain."))
     checks = [check for check in examination.checks if check.group == title]
     tables = [checks_table("Checks", checks)] if checks else []
-    return Section(name, title, notes(examination, title), images, tables)
+    return Section(name, title, [" ".join(notes(examination, title))], images, tables)
 
 
 def steps(examination: Examination, titles: dict[str, str], add: Add) -> Section:

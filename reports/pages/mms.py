@@ -24,6 +24,7 @@ from mpm_verify.reports.figures.time_step import time_step
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.tables import study as tables
 from mpm_verify.reports.tables.cost import compares
+from mpm_verify.solver.plugins import label
 
 TIME = "Error of u in rms against the Courant number on the finest cells, both axes logarithmic; numbers in the table."
 PLACE = "Error of u in rms over the median of its level, with the particles at several places; numbers in the tables."
@@ -79,7 +80,7 @@ def _page(record: Record, folder: Path, field: tuple[int, int]) -> str:
 
 def _solution(record: Record, solution: str, folder: Path, field: tuple[int, int]) -> dict[str, object]:
     """Figures and blind spots of one solution; figure files carry its name where the study has several."""
-    end = "_" + re.sub(r"[^A-Za-z0-9]+", "_", solution) if len(record.solutions) > 1 else ""
+    end = "_" + re.sub(r"[^A-Za-z0-9]+", "_", label(solution)) if len(record.solutions) > 1 else ""
     add = adder(folder, end)
     drawn = convergence(record, solution)
     add("figure1", drawn["figure1"], "")
@@ -89,13 +90,15 @@ def _solution(record: Record, solution: str, folder: Path, field: tuple[int, int
     images = {
         "time": _maybe(add, "time_step", time_step(record, solution), TIME),
         "position": _maybe(add, "position", position(record, solution), PLACE),
-        "particles": [add(f"particles_{m}", drawn, f"{words.method(m)}: {COUNT}") for m, drawn in several.items()],
+        "particles": [
+            add(f"particles_{label(m)}", drawn, f"{words.method(m)}: {COUNT}") for m, drawn in several.items()
+        ],
     }
     if graded.found(record):
-        alt = f"Error of u on {solution} against cost: uniform, graded and thinned layouts."
+        alt = f"Error of u on {label(solution)} against cost: uniform, graded and thinned layouts."
         images["graded"] = add("graded", graded.figure(record, solution), alt)
     return images | {
-        "name": solution,
+        "name": label(solution),
         "panels": [
             add(f"figure1_{norm}", drawn[f"figure1_{norm}"], _alt(record, solution, norm))
             for norm in ("rms", "printed")
@@ -132,7 +135,7 @@ def _field(record: Record, run: Run, add: Add) -> Image | None:
     most = words.sci(float(arrays["error_u"].max()))
     grid = f"{run.cells} by {run.cells} cells"
     alt = f"Size of the error of u at the last step, {words.series(run)}, {grid}: at most {most}."
-    return add(f"error_field_{run.method}", error_field(run, arrays), alt)
+    return add(f"error_field_{label(run.method)}", error_field(run, arrays), alt)
 
 
 def _alt(record: Record, solution: str, norm: str) -> str:

@@ -9,19 +9,21 @@ from mpm_verify.cases.objectivity.block import PRINTED, REST, SMALL
 from mpm_verify.cases.objectivity.findings import CONTROLS, INERTIA
 from mpm_verify.cases.objectivity.rates import FIGURE2 as KINEMATIC
 from mpm_verify.cases.objectivity.rates import ORDERS, SHEAR
-from mpm_verify.reports.components.examined import Section, checks_table, render
+from mpm_verify.reports.components.examined import Section, checks_table
+from mpm_verify.reports.components.examined_study import page as examined_page
 from mpm_verify.reports.components.page import Add
 from mpm_verify.reports.components.show import Table
 from mpm_verify.reports.figures import objectivity as draw
+from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences.remarks import notes
 from mpm_verify.reports.words import sci
 
 MISSES = "Largest miss of each negative control, as a fraction of the stress; ∞ where the run failed"
 
 
-def page(folder: Path, examination: Examination) -> Path:
-    """Write the page; its path. Raises StoreError."""
-    return render(folder, examination, sections)
+def page(record: Record, vtk: bool = False) -> Path:
+    """Write the page; its path. There are no snapshots, whatever `vtk` says. Raises StoreError."""
+    return examined_page(record, sections)
 
 
 def sections(examination: Examination, add: Add) -> Sequence[Section]:

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 
 from mpm_verify.mms.blind_spots import CLEAR, FAINT, ROUND, SEEN_BY, BlindSpot, Numbers, SpotCode
+from mpm_verify.reports.sentences.numbers import figure, percent
 
 MINUS = "\N{MINUS SIGN}"
 Words = Callable[[Numbers], str]
@@ -19,18 +20,6 @@ def sentence(spot: BlindSpot) -> str:
 def unseen(spot: BlindSpot) -> str:
     """What a study is blind to, in one sentence."""
     return BLIND[spot.code](spot.numbers)
-
-
-def percent(part: float) -> str:
-    """0 %, 3.1 %, 160 %."""
-    return f"{figure(100 * part)} %"
-
-
-def figure(value: float) -> str:
-    """Two digits, and no exponent but for small numbers."""
-    if abs(value) < 1e-12:
-        return "0"
-    return f"{float(f'{value:.2g}'):.0f}" if abs(value) >= 10 else f"{value:.2g}"
 
 
 def no_shear(n: Numbers) -> str:

@@ -50,6 +50,15 @@ REMARKS: dict[str, Words] = {
         "First order is expected of this material: it returns along the stress at the end of a step, and costs an "
         "order where the direction of the stress turns."
     ),
+    Code.RATE_IDLE: lambda n: (
+        f"rate={n['rate']} changes nothing here: along a path of strains the material works in its own frame, and "
+        "nothing turns; verify objectivity tells the rates apart."
+    ),
+    Code.PATH_READ: lambda n: (
+        f"{n['used']} are read of {n['file']}; the largest strain is {n['largest']:.3g} ({100 * n['largest']:.3g} %)."
+    ),
+    Code.PATH_ZERO: lambda n: f"{n['columns']}: zero in every row, as in plane strain, which is what is computed.",
+    Code.PATH_UNUSED: lambda n: f"Not used of {n['file']}: {n['columns']}.",
     Code.FAILED: failed,
     Code.AGAINST: lambda n: f"Errors are against: {n['source']}.",
     Code.AGAINST_OWN: lambda n: f"Errors are against: its own curve with {n['times']:g} times the steps.",

@@ -4,23 +4,19 @@ from collections.abc import Mapping
 from typing import Any
 
 from mpm_verify.cases.objectivity.findings import ObjectivityRemark as Code
+from mpm_verify.reports.sentences.numbers import percent, span
 from mpm_verify.reports.sentences.remarks import Words, missed
 
 Numbers = Mapping[str, Any]
-
-
-def percent(fraction: float) -> str:
-    """A fraction with two digits."""
-    return f"{100 * fraction:.2g} %"
 
 
 def turns(n: Numbers) -> str:
     """All checks pass."""
     return (
         "The stress of the block turns with it: horizontal and vertical stress swap, and the shear stress in the axes "
-        f"of the laboratory reaches {n['peak']:.3f} of the vertical stress at 45 degrees, as it must. All "
-        f"{n['controls']:g} negative controls are seen, the formulas as printed in the paper among them; but "
-        f"{n['unseen']:g} of them not in Figure 2."
+        f"of the laboratory reaches {n['peak']:.3f} of the vertical stress at 45 degrees, where the closed form has "
+        f"{n['exact']:.3f}. All {n['controls']:g} negative controls are seen, the formulas as printed in the "
+        f"paper among them; but {n['unseen']:g} of them not in Figure 2."
     )
 
 
@@ -85,11 +81,11 @@ def controls(n: Numbers) -> str:
     )
     if not n:
         return f"{text} Figure 2 sees all of them."
-    orders = f"{min(n.values()):.2f} to {max(n.values()):.2f}"
+    orders = span(min(n.values()), max(n.values()))
     return (
         f"{text} Figure 2 cannot see all of them. The block is not strained while it turns, so D may stand in any "
         f"frame: those that leave D where it was ({', '.join(n)}) give the right figure. They show in a turn with "
-        f"strain, with orders from {orders}. And a frame that stretches (stretched_frame) depends on the strain at "
+        f"strain, with an order of {orders}. And a frame that stretches (stretched_frame) depends on the strain at "
         "which the block is turned."
     )
 
@@ -108,7 +104,7 @@ def orders(n: Numbers) -> str:
     """Orders of the rates, and what costs one."""
     return (
         "F(t) = R(π t/2) diag(1 - t/5, 1), t from 0 to 1: the body is compressed along its own axis while it turns. "
-        f"Rates are of second order ({n['least']:.2f} to {n['most']:.2f} here). D in the frame of either end of the "
+        f"Rates are of second order ({span(n['least'], n['most'])} here). D in the frame of either end of the "
         "step, or added as it is, costs an order; a wrong rotation of the stress converges to a wrong stress."
     )
 

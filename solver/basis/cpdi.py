@@ -76,30 +76,6 @@ def fill(x, F, r0, ox, oy, inv_dx, nx, ny, x0, x1, y0, y1, table, node):
     return bad == 0
 
 
-@kernel(FILL)
-def fill_limited(x, F, domain, ox, oy, inv_dx, nx, ny, x0, x1, y0, y1, table, node):
-    """The same with half diagonals no longer than the fifth number of each domain, in cells."""
-    bad = 0
-    for b in range(x.shape[0] // 2):
-        r1x, r1y, r2x, r2y = half_sides(b, 5 * b, F, domain)
-        sx = r1x + r2x
-        sy = r1y + r2y
-        dx = r1x - r2x
-        dy = r1y - r2y
-        s = np.sqrt(sx * sx + sy * sy)
-        d = np.sqrt(dx * dx + dy * dy)
-        long = domain[5 * b + 4] / inv_dx
-        s = long / (s + long + abs(s - long))  # half of long / max(s, long); as a branch it would not vectorise
-        d = long / (d + long + abs(d - long))
-        r1x = s * sx + d * dx
-        r1y = s * sy + d * dy
-        r2x = s * sx - d * dx
-        r2y = s * sy - d * dy
-        bad += passed(b, x, r1x, r1y, r2x, r2y, ox, oy, inv_dx, x0, x1, y0, y1)
-        parallelogram(b, x, r1x, r1y, r2x, r2y, ox, oy, inv_dx, ny, table, node)
-    return bad == 0
-
-
 @dataclass(frozen=True)
 class Cpdi(Basis):
     """Sixteen neighbours, order 2. `limit` of the half diagonals, in cells; raises ValueError unless above zero."""
@@ -115,6 +91,8 @@ class Cpdi(Basis):
         if not self.limit > 0:
             raise ValueError(f"limit = {self.limit} must be above zero: half a diagonal of a domain, in cells")
         if self.limit < inf:
+            from mpm_verify.solver.basis._cpdi_limited import fill_limited  # takes two seconds to compile
+
             object.__setattr__(self, "fill", fill_limited)
             object.__setattr__(self, "domain_size", 5)
 

@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
-from mpm_verify.cases.mms.run import AXES, Run
+from mpm_verify.cases.mms.run import AXES, QUICK, Run
 from mpm_verify.verify.options import study_command, values
 
 Replicates = Annotated[
@@ -23,6 +23,11 @@ def mms(asked: dict[str, list[str]], replicates: int, quick: bool, out: Path | N
         from mpm_verify.cases.harness.build import Asked, build
 
         study = build(Asked("mms", values(Run, asked), replicates, quick), command())
+    usual = (QUICK if quick else AXES)["cells"]
+    chosen = sorted({run.cells for run in study.runs})
+    if "cells" not in asked and chosen != list(usual):
+        cells = ",".join(map(str, chosen))
+        typer.echo(f"cells chosen: {cells}, which fill the body as {','.join(map(str, usual))} do not", err=True)
     return conduct(study, Settings(named(study, out), **more))
 
 

@@ -15,6 +15,7 @@ from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.cases.judging.stall import Stall
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences import commands, stalls, verdicts
+from mpm_verify.solver.plugins import label
 
 STYLES = {"PASS": "bold green", "FAIL": "bold red", "INCONCLUSIVE": "bold yellow", "ERROR": "bold magenta"}
 ALWAYS = ("u", "rms")
@@ -68,7 +69,7 @@ def errors_table(found: Sequence[Finding]) -> Table:
     table.add_column("")
     for finding in found:
         for number, row in enumerate(rows(finding)):
-            solution = finding.plan.run.solution if number == 0 else ""
+            solution = label(finding.plan.run.solution) if number == 0 else ""
             table.add_row(*((solution,) if several else ()), *row)
     return table
 
@@ -76,7 +77,7 @@ def errors_table(found: Sequence[Finding]) -> Table:
 def rows(finding: Finding) -> Iterator[tuple[str, ...]]:
     """A row a level; names once a block."""
     d, orders = finding.plan, iter(finding.verdict.local_orders)
-    first, earlier = (d.run.method, str(d.run.ppc), f"{d.quantity} {d.norm}"), False
+    first, earlier = (label(d.run.method), str(d.run.ppc), f"{d.quantity} {d.norm}"), False
     for level, passed in zip_longest(finding.levels, finding.crossings):
         cells, faces = f"{1 / level.h:.0f}", "" if passed is None else f"{passed:.1f}"
         if level.ended:
@@ -111,8 +112,10 @@ def sentence(finding: Finding, several: bool = False) -> Text:
 
 def named(declared: QuantityPlan[Any], several: bool) -> str:
     """What a sentence is about, with its solution if the study has several."""
-    solution = f" on {declared.run.solution}" if several else ""
-    return f"{declared.run.method}{solution}, {declared.run.ppc} per cell, {declared.quantity} in {declared.norm}"
+    solution = f" on {label(declared.run.solution)}" if several else ""
+    return (
+        f"{label(declared.run.method)}{solution}, {declared.run.ppc} per cell, {declared.quantity} in {declared.norm}"
+    )
 
 
 def stall(finding: Finding, found: Stall, several: bool = False) -> Text:

@@ -1,0 +1,64 @@
+"""The axes of element tests. Names of tests are those of paths.py, which is heavier to import."""
+
+from dataclasses import dataclass
+from hashlib import sha256
+from math import inf
+from pathlib import Path
+from typing import ClassVar
+
+from mpm_verify.cases.harness.study import RunRecord, axis
+from mpm_verify.solver.plugins import MATERIALS
+
+CONFINED = 5e3  # the scale of the paper's column
+PROPERTIES, PATH = "properties", "path"  # what is known of the material beside curves; the path of a file
+TEST_NAMES = (
+    "isotropic", "oedometric", "biaxial", "constant_s", "shear_stress", "shear_volume", "undrained", "cyclic_shear",
+)  # fmt: skip
+AXES = {"test": (*TEST_NAMES, PROPERTIES)}
+
+
+@dataclass(frozen=True)
+class ElementRun(RunRecord):
+    """One element test of a material. Raises ValueError with one line for what no test has."""
+
+    material: str = axis("mohr_coulomb", "Constitutive model.", MATERIALS)
+    test: str = axis("biaxial", f"{', '.join(TEST_NAMES)}, or {PROPERTIES}: tables and limits of the material.")
+    stress: float = axis(CONFINED, "Isotropic stress at the start, compression positive, Pa.")
+    steps: int = axis(100, "Strain steps of the coarsest run; the finest has sixteen times as many.")
+    path: str = axis("", "CSV file with a strain path: columns exx, eyy and exy, or gxy = 2 exy.")
+    units: str = axis("", "Units of the strains in that file: percent or fraction; usual is what its header says.")
+    case: ClassVar[str] = "element"
+
+    def __post_init__(self) -> None:
+        known = (*TEST_NAMES, PROPERTIES, PATH)
+        if self.test not in known:
+            raise ValueError(f"no test {self.test!r}; choose from {', '.join(known[:-1])}")
+        if not 1 <= self.steps <= 10_000:
+            raise ValueError(f"steps = {self.steps} cannot be run; choose whole numbers from 1 to 10000")
+        if not 0 < self.stress < inf:
+            raise ValueError(f"stress = {self.stress:g} must be above zero and finite: compression is positive")
+        if bool(self.path) != (self.test == PATH):
+            raise ValueError("path: a file belongs to test = path, and to no other")
+        if self.units and not self.path:
+            raise ValueError("units belongs to path: a CSV file")
+
+    @property
+    def cost(self) -> float:
+        """Steps of all runs of the test, in updates of a small grid run."""
+        return 100.0 * self.steps
+
+    @property
+    def digest(self) -> str:
+        """Name of the Result, 16 hex digits; of a path from a file also its content."""
+        return self.named(file_digest(self.path) if self.path else "")
+
+    def __str__(self) -> str:
+        return f"{self.material}, {self.test}"
+
+
+def file_digest(path: str) -> str:
+    """SHA-256 of a file's content; of one that cannot be read any more, what no other has."""
+    try:
+        return sha256(Path(path).read_bytes()).hexdigest()
+    except OSError:
+        return f"unreadable {path}"

@@ -1,0 +1,102 @@
+"""The time steps of a study against the stability limit of the solver, before anything runs."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from math import ceil, floor, log10
+from typing import Any
+
+import numpy as np
+
+from mpm_verify.cases.mms.run import Run
+from mpm_verify.solver.plugins import is_file, label, parameters_of, split
+
+CELLS, TIMES = 32, 9  # where and when the velocity at the start is looked at
+SLACK = 1e-3  # of that velocity: particles lie elsewhere
+MOST_STEPS = 10_000_000
+LEAST_COURANT = 1e-3
+
+
+def check_time_steps(
+    specification: str, solution: Any, law: Any, runs: Iterable[Run], courants: Sequence[float]
+) -> None:
+    """Raise ValueError, with what to type, where a run takes a step that the solver refuses: dt > dx / (c + |v|).
+
+    `courants` are those that were asked for, the largest last. What passes here also runs: |v| is the largest over the
+    body in the half step before the start.
+    """
+    steps = {(run.cells, run.courant): time_steps(solution, width(solution) / run.cells, run.courant) for run in runs}
+    longest = max(count for count, _ in steps.values())
+    if longest > MOST_STEPS:
+        raise ValueError(
+            f"{label(specification)}: a run would take {longest:.2g} time steps to fill the duration of "
+            f"{solution.duration:g}; take a shorter duration or a lower reference speed"
+        )
+    behind = 0.5 * max(dt for _, dt in steps.values())
+    c, v = float(law.wave_speed()), fastest(solution, behind)
+    if any(dt * (c + v) > width(solution) / cells for (cells, _), (_, dt) in steps.items()):
+        raise ValueError(refusal(specification, solution, c, v, courants))
+
+
+def fastest(solution: Any, behind: float) -> float:
+    """Largest speed of the body over the times from -behind to 0, sampled, with some slack."""
+    import sympy as sp
+
+    X, t = sp.symbols("X Y", real=True), sp.Symbol("t", real=True)
+    velocity = sp.lambdify((*X, t), list(solution.displacement(X, t).diff(t)), "numpy", cse=True)
+    corners = solution.layout(width(solution) / CELLS, 4).corners.reshape(-1, 2).T
+    most = max(float(np.hypot(*velocity(*corners, time)).max()) for time in np.linspace(-behind, 0.0, TIMES))
+    return most * (1 + SLACK)
+
+
+def refusal(specification: str, solution: Any, c: float, v: float, courants: Sequence[float]) -> str:
+    """The largest Courant number at this reference speed and the least speed at this number, as they are typed."""
+    C, courant = float(solution.C), courants[-1]
+    largest = rounded(C / (c + v), floor)
+    ways = []
+    if largest >= LEAST_COURANT:
+        typed = [largest, *(other for other in reversed(courants[:-1]) if other < largest)]
+        ways.append(f"--courant {','.join(f'{one:g}' for one in typed)}")
+    name, least = speed_parameter(solution), courant * (c + v)
+    if name and courant * v < C:  # the body moves faster with it, at most in proportion
+        least = max(least, courant * c / (1 - courant * v / C))
+    faster = rounded(least, ceil)
+    if name:
+        file, given = split(specification)
+        others = [item for item in given.split(",") if item and not item.startswith(f"{name}=")]
+        ways.append(f"--solution {file}:{','.join([*others, f'{name}={faster:g}'])}")
+    elif is_file(specification):
+        ways.append(f'"speed": {faster:g} in domain()')
+    return (
+        f"{label(specification)}: with waves at {c:.4g}, the body at {v:.3g} and a reference speed of {C:g}, a "
+        f"Courant number of {courant:g} is above the stability limit of {largest:g}; the speed would have to be "
+        f"{faster:g} or more; take {', or '.join(ways)}; --force runs it all the same"
+    )
+
+
+def speed_parameter(solution: Any) -> str:
+    """The parameter that is the reference speed, as it is typed; empty where none is."""
+    for name, field in parameters_of(solution).items():
+        if getattr(solution, field.name) == solution.C:
+            try:
+                if replace(solution, **{field.name: 2 * solution.C}).C == 2 * solution.C:
+                    return name
+            except ValueError:
+                continue
+    return ""
+
+
+def rounded(value: float, way: Any) -> float:
+    """Three digits, down or up."""
+    unit = 10.0 ** (floor(log10(value)) - 2)
+    return float(f"{way(value / unit) * unit:.3g}")
+
+
+def time_steps(solution: Any, dx: float, courant: float) -> tuple[int, float]:
+    """Number of steps of length courant dx / C at most that fill the duration, and their length."""
+    steps = ceil(solution.duration / (courant * dx / solution.C) * (1 - 1e-12))
+    return steps, solution.duration / steps
+
+
+def width(solution: Any) -> float:
+    """Extent along x, the one that cells are counted along."""
+    return float(solution.upper[0] - solution.lower[0])

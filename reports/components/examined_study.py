@@ -1,0 +1,42 @@
+"""The page of a study that consists of Examinations: one after the other, with their names where there are several."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from mpm_verify.cases.harness.checks import Examination
+from mpm_verify.cases.harness.store import StoreError
+from mpm_verify.reports.components.examined import Section, Sections, render
+from mpm_verify.reports.components.page import Add
+from mpm_verify.reports.frames import Record
+
+
+def page(record: Record, sections: Sections, kinds: Sequence[str] = ("svg", "pdf", "png")) -> Path:
+    """Write the page of `record.analysis.more.examinations`; its path. Raises StoreError."""
+    found: Mapping[str, Examination] = record.analysis.more.examinations
+    if not found:
+        raise StoreError(f"{record.store.folder} holds no part that can be drawn: run its study to the end")
+    whole = replace(
+        next(iter(found.values())),
+        title=record.study.title,
+        checks=tuple(check for one in found.values() for check in one.checks),
+        findings=tuple(finding for one in found.values() for finding in one.findings),
+    )
+    return render(record.store.folder, whole, lambda _, add: every(found, sections, add), kinds)
+
+
+def every(found: Mapping[str, Examination], sections: Sections, add: Add) -> Sequence[Section]:
+    """The sections of each, with its name in front where there are several."""
+    if len(found) == 1:
+        return sections(next(iter(found.values())), add)
+    parts = []
+    for number, (name, one) in enumerate(found.items(), 1):
+        mine = sections(one, numbered(add, number))
+        heading = name.rstrip(": ")
+        parts += [replace(part, key=f"{part.key}-{number}", heading=f"{heading}: {part.heading}") for part in mine]
+    return parts
+
+
+def numbered(add: Add, number: int) -> Add:
+    """The same, with a number behind the names of figures."""
+    return lambda key, figure, alt: add(f"{key}_{number}", figure, alt)

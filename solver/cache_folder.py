@@ -1,0 +1,102 @@
+"""The folder of what can be made again: compiled kernels. Ours alone, and tidied.
+
+It holds a folder for each kernel file, NAME-HASH, which is removed when no process has used it for a month.
+"""
+
+import atexit
+import fcntl
+import os
+import re
+import shutil
+import stat
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from functools import cache
+from pathlib import Path
+
+DAY = 86400.0  # seconds
+UNUSED = 30 * DAY
+KERNELS = re.compile(r"[\w.-]+-[0-9a-f]{24}|removed-\w+")
+FORMER = re.compile(r"[0-9a-f]{16}-numba[\w.+]+")  # one folder for all kernels, of versions up to 0.4
+
+
+@cache
+def base() -> Path:
+    """Below $XDG_CACHE_HOME, or a temporary folder where that cannot be written; only where nobody else may write."""
+    home = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "mpm-verify"
+    with suppress(OSError):
+        home.mkdir(mode=0o700, parents=True, exist_ok=True)
+        if home.stat().st_uid == os.getuid() and os.access(home, os.W_OK):
+            return home
+    spare = Path(tempfile.gettempdir()) / f"mpm-verify-{os.getuid()}"
+    with suppress(OSError):
+        spare.mkdir(mode=0o700, parents=True, exist_ok=True)
+        if private(spare):
+            return spare
+    fresh = Path(tempfile.mkdtemp(prefix="mpm-verify-"))
+    atexit.register(shutil.rmtree, fresh, ignore_errors=True)
+    return fresh
+
+
+def private(folder: Path) -> bool:
+    """Whether this is a folder, no link, that we own and nobody else can write to or look into."""
+    found = folder.lstat()
+    return stat.S_ISDIR(found.st_mode) and found.st_uid == os.getuid() and stat.S_IMODE(found.st_mode) == 0o700
+
+
+def kernel_folder(name: str) -> Path:
+    """The folder of one kernel file, marked as in use today: nobody removes it for a month."""
+    folder = base() / name
+    try:
+        fresh = time.time() - folder.stat().st_mtime < DAY
+    except OSError:
+        fresh = False
+    if not fresh:
+        with _locked(fcntl.LOCK_SH):
+            folder.mkdir(exist_ok=True)
+            os.utime(folder)
+        tidy()
+    return folder
+
+
+def tidy() -> None:
+    """Remove kernel folders that nobody has used for a month, and those of former versions unused for a day.
+
+    Moved away first, while no process marks a folder as in use: what goes is out of everybody's sight.
+    """
+    with suppress(OSError), _locked(fcntl.LOCK_EX | fcntl.LOCK_NB):
+        for number, folder in enumerate(_unused()):
+            away = base() / f"removed-{os.getpid()}_{number}_{time.time_ns()}"
+            with suppress(OSError):
+                os.replace(folder, away)
+                shutil.rmtree(away, ignore_errors=True)
+
+
+def _unused() -> list[Path]:
+    now, found = time.time(), []
+    for folder in base().iterdir():
+        age = UNUSED if KERNELS.fullmatch(folder.name) else DAY if FORMER.fullmatch(folder.name) else None
+        ours = age is not None and not folder.is_symlink() and folder.is_dir() and folder.stat().st_uid == os.getuid()
+        if ours and age is not None and now - _last_use(folder) > age:
+            found.append(folder)
+    return found
+
+
+def _last_use(folder: Path) -> float:
+    """When it was marked as in use; of a former version, when a file in it was last read or written."""
+    if not FORMER.fullmatch(folder.name):
+        return folder.stat().st_mtime
+    files = [item.stat() for item in folder.rglob("*") if item.is_file()]  # to list a folder is to read it
+    return max([folder.stat().st_mtime, *(max(file.st_mtime, file.st_atime) for file in files)])
+
+
+@contextmanager
+def _locked(how: int) -> Iterator[None]:
+    handle = os.open(base(), os.O_RDONLY)
+    try:
+        fcntl.flock(handle, how)
+        yield
+    finally:
+        os.close(handle)

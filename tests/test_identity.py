@@ -1,0 +1,347 @@
+"""A run is known by what derives it: an edit voids the runs that it can change, and no others."""
+
+import ast
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from fixtures_tree import Tree, copied, forget
+
+from mpm_verify.cases.column.run import ColumnRun
+from mpm_verify.cases.harness.identity import identity
+from mpm_verify.cases.harness.runner import RunnerError, process_pool, run_study
+from mpm_verify.cases.harness.store import Store
+from mpm_verify.cases.harness.study import Run
+from mpm_verify.cases.mms.sweep import Sweep, build
+from mpm_verify.solver import own_file
+from mpm_verify.solver.plugins import MATERIALS, METHODS, SOLUTIONS, available
+from mpm_verify.solver.source_hash import closure, parse
+
+RUN = Run("cpdi", "axis_aligned", "neo_hookean", 8, 4, 0.4)
+RUNS = {
+    "cpdi": RUN,
+    "gimp": replace(RUN, method="gimp"),
+    "swirl": replace(RUN, solution="swirl"),
+    "apic": replace(RUN, transfer="apic"),
+    "graded": replace(RUN, layout="graded"),
+    "column": ColumnRun(),
+    "jaumann": ColumnRun(law="mohr_coulomb:rate=jaumann"),
+    "fbar": ColumnRun(smoothing="fbar"),
+}
+MMS, COLUMN = {"cpdi", "gimp", "swirl", "apic", "graded"}, {"column", "jaumann", "fbar"}
+
+
+@pytest.fixture
+def tree(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Tree]:
+    yield Tree(copied(tmp_path), monkeypatch)
+    monkeypatch.undo()
+    forget()
+
+
+def digests() -> dict[str, str]:
+    return {name: run.digest for name, run in RUNS.items()}
+
+
+def voided(before: dict[str, str]) -> set[str]:
+    return {name for name, digest in digests().items() if digest != before[name]}
+
+
+# ---- what the closure holds
+
+
+def test_the_closure_holds_what_computes_and_no_more() -> None:
+    for case in ("mms", "column"):
+        held = {name.removeprefix("mpm_verify.") for name in closure(f"mpm_verify.cases.{case}.case")}
+        assert {
+            f"cases.{case}.case",
+            "solver.step",
+            "solver.transfer",
+            "solver.transfers._passes",
+            "solver._jit",
+        } <= held
+        assert not {name for name in held if name.startswith(("reports", "verify", "tests"))}
+        other = {"mms": "column", "column": "mms"}[case]
+        assert not {name for name in held if name.startswith(f"cases.{other}")}
+        assert not {"cases.harness.store", "cases.harness.runner", "cases.judging.order", "cases.judging.fit"} & held
+        for package in ("solver.basis", "solver.material", "solver.rates", "solver.smoothing", "mms.solutions"):
+            assert not {name for name in held if name.startswith(package)}, package
+
+
+@pytest.mark.parametrize("name", available("mpm_verify.solver.basis"))
+def test_a_basis_knows_neither_transfers_nor_cases(name: str) -> None:
+    held = closure(f"{METHODS}.{name}")
+    assert f"{METHODS}.{name}" in held
+    assert "mpm_verify.solver.weights" in held
+    assert not {n for n in held if "transfer" in n or ".cases." in n or ".mms." in n}
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [
+        ("x = 1", "x = 1  # a comment"),
+        ("def f(x):\n    return x", 'def f(x):\n    """A docstring."""\n\n    return x'),
+        ("def f(x): return x", "def f(x: float) -> float: return x"),
+        ('raise ValueError("one")', 'raise ValueError(f"{x} two")'),
+        ("x = 1", '"""A docstring."""\nx = 1'),
+        ("x = 1", "if TYPE_CHECKING:\n    from a import b\nx = 1"),
+        ("x = (1,\n 2)", "x = (1, 2)"),
+    ],
+)
+def test_the_same_tree(one: str, other: str) -> None:
+    assert parse(one.encode()) == parse(other.encode())
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [
+        ("x = 1", "x = 2"),
+        ("x = 1", "x = 1.0"),
+        ("x = 1", "x = -1"),
+        ("x = None", "x = ..."),
+        ("def f(x=1): pass", "def f(x=2): pass"),
+        ("def f(x): return a + x", "def f(x): return x + a"),
+        ("@a\ndef f(): pass", "def f(): pass"),
+        ("class A:\n    x: int = 1", "class A:\n    x: ClassVar[int] = 1"),
+        ("x = [1, [2]]", "x = [[1], 2]"),
+        ('raise RunFailed("one")', 'raise RunFailed("two")'),
+        ("from a import b", "from a import c"),
+        ("if TYPE_CHECKING:\n    x = 1\nelse:\n    x = 2", "if TYPE_CHECKING:\n    x = 1\nelse:\n    x = 3"),
+    ],
+)
+def test_another_tree(one: str, other: str) -> None:
+    assert parse(one.encode()).digest != parse(other.encode()).digest
+
+
+# ---- which runs an edit voids
+
+
+def test_what_voids_nothing(tree: Tree) -> None:
+    before = digests()
+    tree.replace("solver/transfer.py", '"""', '"""Other words. ')
+    tree.append("solver/step.py", "# a comment\n")
+    tree.replace("solver/basis/cpdi.py", "def fill(", "# a comment\ndef fill(")
+    tree.replace("solver/layout.py", "must lie between", "has to lie between")
+    tree.append("reports/pages/mms.py")
+    tree.append("verify/commands/mms.py")
+    tree.append("cases/mms/sweep.py")
+    tree.append("cases/mms/expectations.py")
+    tree.append("cases/judging/order.py")
+    tree.append("cases/element/exam.py")
+    tree.append("cases/another/case.py", "def execute(run, tick):\n    return 1\n")
+    tree.append("solver/basis/another.py", "x = 1\n")
+    assert voided(before) == set()
+
+
+@pytest.mark.parametrize(
+    ("file", "runs"),
+    [
+        ("solver/transfer.py", MMS | COLUMN),
+        ("solver/weights.py", MMS | COLUMN),
+        ("solver/transfers/_passes.py", MMS | COLUMN),
+        ("solver/basis/gimp.py", {"gimp"}),
+        ("solver/basis/cpdi.py", MMS - {"gimp"} | COLUMN),
+        ("solver/basis/mpm.py", set()),
+        ("solver/transfers/apic.py", {"apic"}),
+        ("solver/material/neo_hookean.py", MMS),
+        ("solver/material/mohr_coulomb.py", COLUMN),
+        ("solver/rates/green_naghdi.py", COLUMN - {"jaumann"}),
+        ("solver/rates/jaumann.py", {"jaumann"}),
+        ("solver/smoothing/fbar.py", {"fbar"}),
+        ("mms/solutions/swirl.py", {"swirl"}),
+        ("mms/grading.py", {"graded"}),
+        ("mms/derive.py", MMS),
+        ("cases/mms/case.py", MMS),
+        ("cases/column/case.py", COLUMN),
+    ],
+)
+def test_what_an_edit_voids(tree: Tree, file: str, runs: set[str]) -> None:
+    before = digests()
+    tree.append(file)
+    assert voided(before) == runs
+
+
+# ---- a user's file: what it returned
+
+SOLUTION = """
+import json, os, pathlib, time
+import sympy as sp
+{head}
+def displacement(X, t):
+    x, y = X
+    {body}
+    return sp.Matrix([1, 1]) * AMP * sp.sin(sp.pi * x) * sp.sin(sp.pi * y) * (1 - sp.cos(100 * sp.pi * t))
+def domain():
+    return {{"lower": (0, 0), "upper": (1, 1), "duration": 0.01, "speed": 100}}
+"""
+READ = 'json.loads((pathlib.Path(__file__).parent / "data.json").read_text())'
+Write = Callable[..., str]
+
+
+def afresh() -> None:
+    """As a new process: no user's file was executed yet."""
+    own_file._held.clear()
+
+
+@pytest.fixture
+def write(tmp_path: Path) -> Write:
+    def text(head: str = "", body: str = "", folder: str = "one") -> str:
+        (tmp_path / folder).mkdir(exist_ok=True)
+        path = tmp_path / folder / "own.py"
+        path.write_text(SOLUTION.format(head=head, body=body))
+        return str(path)
+
+    return text
+
+
+@pytest.mark.parametrize(
+    ("head", "body"),
+    [
+        ("from consts import AMP", ""),
+        ("import consts", "AMP = consts.AMP"),
+        ("", "from consts import AMP"),
+        ("from inner.deep import AMP", ""),
+        ("import sys; sys.path.insert(0, str(pathlib.Path(__file__).parent)); import consts", "AMP = consts.AMP"),
+    ],
+)
+def test_a_helper_counts_and_is_read_again(write: Write, head: str, body: str) -> None:
+    path = write(head, body)
+    folder, run = Path(path).parent, replace(RUN, solution=path)
+    (folder / "inner").mkdir()
+    (folder / "inner" / "__init__.py").write_text("")
+    (folder / "inner" / "deep.py").write_text("from consts import AMP\n")
+    seen = {}
+    for amplitude in (0.05, 0.01, 0.05):  # in one process, and files of one length within one second
+        (folder / "consts.py").write_text(f"AMP = {amplitude}\n")
+        seen.setdefault(amplitude, set()).add(run.digest)
+    assert {len(digests) for digests in seen.values()} == {1}
+    assert seen[0.05] != seen[0.01]
+    assert not list(folder.rglob("__pycache__"))
+
+
+def test_two_files_do_not_share_their_helpers(write: Write) -> None:
+    paths = [write("from consts import AMP", folder=folder) for folder in ("one", "other")]
+    for path, amplitude in zip(paths, (0.05, 0.01), strict=True):
+        (Path(path).parent / "consts.py").write_text(f"AMP = {amplitude}\n")
+    one, other = (identity(SOLUTIONS, path) for path in paths)
+    assert one != other
+    (Path(paths[1]).parent / "consts.py").write_text("AMP = 0.05  # and a comment\n")
+    assert identity(SOLUTIONS, paths[1]) == one
+    assert "consts" not in sys.modules
+
+
+@pytest.mark.parametrize(("head", "body"), [(f"AMP = {READ}", ""), ("", f"AMP = {READ}")])
+def test_data_that_are_read_count(write: Write, head: str, body: str) -> None:
+    path, found = write(head, body), []
+    for amplitude in (0.05, 0.01, 0.05):
+        (Path(path).parent / "data.json").write_text(json.dumps(amplitude))
+        afresh()
+        found.append(identity(SOLUTIONS, path))
+    assert found[0] == found[2] != found[1]
+
+
+def test_the_environment_counts(write: Write, monkeypatch: pytest.MonkeyPatch) -> None:
+    path, found = write('AMP = float(os.environ["AMP"])'), []
+    for amplitude in ("0.05", "0.01", "0.05"):
+        monkeypatch.setenv("AMP", amplitude)
+        afresh()
+        found.append(identity(SOLUTIONS, path))
+    assert found[0] == found[2] != found[1]
+
+
+def test_other_processes_derive_the_same(write: Write) -> None:
+    """Whatever the order of hashes."""
+    path = write("AMP = sp.Rational(1, 20)", "x = x + 0*y; AMP_ = [sp.exp(x * y * t), sp.sqrt(x + y)]")
+    code = (
+        f"from mpm_verify.cases.harness.study import Run; print(Run('cpdi', {path!r}, 'neo_hookean', 8, 4, 0.4).digest)"
+    )
+    for seed in ("1", "2"):
+        environment = {**os.environ, "PYTHONHASHSEED": seed}
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=environment, check=True)
+        assert done.stdout.strip() == replace(RUN, solution=path).digest
+
+
+CLASS = '''
+from dataclasses import dataclass
+from mpm_verify.solver.elastic import Elastic
+import helper
+@dataclass(frozen=True)
+class Own(Elastic):
+    """{words}"""
+    def energy(self, F, log):
+        return helper.FACTOR * (F[0][0] ** 2 + F[1][1] ** 2 - log(F[0][0])) {more}
+    def update(self, particles, dt):
+        pass
+'''
+
+
+@pytest.mark.parametrize("helper", ["FACTOR = {0}", "import os; FACTOR = float(os.environ['FACTOR'])"])
+def test_a_material_counts_with_its_helpers_and_data(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, helper: str
+) -> None:
+    path, found = tmp_path / "own.py", []
+    for factor, words, more in (
+        (2.0, "a", ""),
+        (3.0, "a", ""),
+        (2.0, "other words", "  # and more"),
+        (2.0, "a", "* 2"),
+    ):
+        monkeypatch.setenv("FACTOR", str(factor))
+        (tmp_path / "helper.py").write_text(helper.format(factor))
+        path.write_text(CLASS.format(words=words, more=more))
+        afresh()
+        found.append(identity(MATERIALS, str(path)))
+    assert found[0] == found[2]
+    assert len(set(found)) == 3
+    assert identity(MATERIALS, f"{path}:E=2") == found[3]  # parameters stand in the run
+
+
+# ---- in worker processes
+
+
+def study_of(solution: str, folder: Path) -> tuple[Store, Callable[[], object]]:
+    study = build(Sweep(solution=solution, cells=(8,), ppc=(4,)), "verify mms", "mms")
+    store = Store(folder)
+    store.create(study)
+
+    def run() -> object:
+        with process_pool(1) as (pool, _):
+            return run_study(study, store, pool, 1)
+
+    return store, run
+
+
+def test_a_worker_derives_the_same(write: Write, tmp_path: Path) -> None:
+    path = write("from consts import AMP")
+    (Path(path).parent / "consts.py").write_text("AMP = 0.02\n")
+    _, run = study_of(path, tmp_path / "study")
+    (result,) = run().values()  # type: ignore[attr-defined]
+    assert result.status == "finished"
+    assert result.digest == replace(RUN, solution=path).digest
+
+
+@pytest.mark.parametrize(
+    ("head", "body"), [("AMP = 0.02 + 1e-12 * time.time()", ""), ("", "AMP = 1e-12 * time.time()")]
+)
+def test_a_worker_refuses_another_problem(write: Write, tmp_path: Path, head: str, body: str) -> None:
+    store, run = study_of(write(head, body), tmp_path / "study")
+    with pytest.raises(RunnerError, match=r"^what computes cpdi 8² cells, 4 per cell is not what it was when") as told:
+        run()
+    assert "\n" not in str(told.value)
+    assert not list(store.runs.iterdir())
+
+
+def test_the_closure_is_found_in_the_text_as_python_imports_it() -> None:
+    """Every module of ours that a statement of case.py names is in the closure, the type checker's left out."""
+    import mpm_verify.cases.mms.case as case
+
+    named = set()
+    for node in ast.parse(Path(str(case.__file__)).read_text()).body:
+        if isinstance(node, ast.ImportFrom) and str(node.module).startswith("mpm_verify"):
+            named.add(str(node.module))
+    assert len(named) > 10
+    assert named <= closure("mpm_verify.cases.mms.case").keys()

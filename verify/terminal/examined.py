@@ -1,0 +1,14 @@
+"""What a study of Examinations prints: each part with its checks, and what came out in words."""
+
+from pathlib import Path
+
+from mpm_verify.reports.frames import Record
+from mpm_verify.reports.sentences.remarks import lead
+from mpm_verify.verify.terminal import checks
+
+
+def show(record: Record, page: Path | None) -> None:
+    """Print the checks and what came out."""
+    found = record.analysis.more.examinations
+    words = [f"{name.rstrip(': ')}: {lead(one)}" if len(found) > 1 else lead(one) for name, one in found.items()]
+    checks.show(record, page, "\n".join(words))

@@ -1,0 +1,5 @@
+"""Frame indifference on a terminal: as any study of Examinations."""
+
+from mpm_verify.verify.terminal.examined import show
+
+__all__ = ["show"]
