@@ -13,11 +13,10 @@ import pytest
 from mpm_verify.cases.harness.identity import identity
 from mpm_verify.cases.mms.case import execute
 from mpm_verify.cases.mms.run import Run
-from mpm_verify.solver.plugins import canonical
 from mpm_verify.mms.check import FINE, check, determinant, least_det
 from mpm_verify.mms.manufacture import manufacture
 from mpm_verify.mms.measure import Sampler
-from mpm_verify.solver.plugins import SOLUTIONS, absolute, create, split
+from mpm_verify.solver.plugins import SOLUTIONS, absolute, canonical, create, split
 from mpm_verify.verify.main import main
 
 EXAMPLE = "tests/own_solution.py"

@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from mpm_verify.cases.mms.sweep import Sweep, build
 
 from mpm_verify.cases.mms.case import execute
 from mpm_verify.cases.mms.expectations import expected, promised
-from mpm_verify.cases.mms.sweep import Sweep, build
 from mpm_verify.cases.mms.time_step import rounded, speed_parameter
 from mpm_verify.mms.cells import check_cells, fits, fitting, ratio
 from mpm_verify.solver import plugins

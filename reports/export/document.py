@@ -13,8 +13,8 @@ from typing import Any
 from pydantic import TypeAdapter
 
 from mpm_verify.cases.harness.axes import particle_axes, position_axes, time_axes
-from mpm_verify.cases.harness.case import case_named
 from mpm_verify.cases.harness.checks import Check
+from mpm_verify.cases.harness.contract import case_named
 from mpm_verify.cases.harness.study import ResultRecord
 from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.cases.judging.records import Ended
