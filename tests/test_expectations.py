@@ -116,8 +116,8 @@ def test_where_nothing_is_expected() -> None:
 
 
 def test_an_own_solution_has_the_order_of_its_file(tmp_path: Path) -> None:
-    assert (of("cpdi", OWN).order, of("cpdi", OWN).source) == (2, "declared by the method")
-    assert of("mpm", OWN) is None
+    assert of("cpdi", OWN).source == "declared by the method"
+    assert of("mpm", OWN) is None  # particles cross cells
     declares = tmp_path / "declares.py"
     declares.write_text(Path(OWN).read_text().replace('"speed": 100}', '"speed": 100, "order": 1.5}'))
     assert of("cpdi", str(declares)).order == 1.5
