@@ -7,7 +7,8 @@ import contextlib
 import os
 import sys
 
-USAGE, DEFECT, STOPPED = 2, 4, 130  # exit codes beside 0 pass, 1 fail, 3 inconclusive or nothing judged
+from mpm_verify.verify.exits import DEFECT, STOPPED, USAGE
+
 FIRST = ("mms", "methods", "graded", "column", "sweep", "material", "objectivity")  # in the help, in this order
 HERE = os.path.dirname(os.path.abspath(__file__))
 CASES = os.path.join(os.path.dirname(HERE), "cases")

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from mpm_verify.verify.main import DEFECT, USAGE
+from mpm_verify.verify.exits import DEFECT, USAGE
 
 if TYPE_CHECKING:
     from mpm_verify.cases.harness.study import Study
