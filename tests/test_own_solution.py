@@ -171,9 +171,9 @@ def test_identity_is_what_is_returned(write: Write, tmp_path: Path, monkeypatch:
     copy = tmp_path / "copy.py"
     copy.write_text(Path(path).read_text())
     assert identity(SOLUTIONS, str(copy)) == first
-    write("sp.Matrix([0.05 * w * s, 0.03 * s * w])")
+    write("sp.Matrix([0.05 * s * w, 0.03 * s * w + 0])  # in other words")
     assert identity(SOLUTIONS, path) == first
-    write("sp.Matrix([0.05 * w * s, 0.02 * s * w])")
+    write("sp.Matrix([0.05 * s * w, 0.02 * s * w])")
     assert identity(SOLUTIONS, path) != first
     for domain in (", 'speed': 90", ", 'duration': 0.03", ", 'boundary': 'fixed'", ", 'material': 'linear_elastic'"):
         write(domain=domain)
