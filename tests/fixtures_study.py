@@ -2,11 +2,13 @@
 
 from contextlib import AbstractContextManager
 from pathlib import Path
+from typing import Any
 from unittest.mock import patch
 
 import numpy as np
 
 from mpm_verify.cases.harness import identity
+from mpm_verify.cases.harness.build import Asked, build
 from mpm_verify.cases.harness.store import Arrays, Store
 from mpm_verify.cases.harness.study import QuantityPlan, Study
 from mpm_verify.cases.judging.order import Expectation
@@ -89,6 +91,11 @@ def plan(
     """What is declared of a quantity of a refinement from 8 cells, with the material of this module."""
     run = Run(method, solution, "neo_hookean", CELLS[0], ppc, 0.4)
     return QuantityPlan(run, quantity, norm, judged, expectation)
+
+
+def built(replicates: int = 1, **axes: Any) -> Study[Run]:
+    """The study of `verify mms` with these values of its axes, a sequence each."""
+    return build(Asked("mms", axes, replicates), "verify mms", "t")
 
 
 def _result(run: Run) -> Result:

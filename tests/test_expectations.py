@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
+import fixtures_study as fixtures
 import pytest
-from mpm_verify.cases.mms.sweep import Sweep, build, canonical
 from typer.testing import CliRunner
 
 from mpm_verify.cases.mms.deviations import DEVIATIONS, SHOWN, SMALL_AMPLITUDE
@@ -15,11 +15,11 @@ from mpm_verify.cases.mms.expectations import (
     registered,
     registry,
 )
-from mpm_verify.cases.mms.methods import LEVELS, QUICK, Comparison, build_methods, everything
+from mpm_verify.cases.mms.methods import LEVELS, QUICK, build_methods, every_method
 from mpm_verify.cases.mms.run import QUANTITIES
 from mpm_verify.solver.failure import FailureKind
 from mpm_verify.solver.plugins import MATERIALS, METHODS, SOLUTIONS, available, canonical, create, load
-from mpm_verify.verify.main import app
+from mpm_verify.verify.main import application
 
 STORED = Path(__file__).with_name("expectations.txt")
 OWN = str(Path(__file__).with_name("own_solution.py"))
@@ -116,7 +116,10 @@ def test_where_nothing_is_expected() -> None:
 
 
 def test_an_own_solution_has_the_order_of_its_file(tmp_path: Path) -> None:
-    assert of("cpdi", OWN) is None
+    """Its file names none: it is the method's own, where the method keeps it."""
+    assert of("cpdi", OWN).source == "declared by the method"
+    assert of("cpdi", OWN).order == 2
+    assert of("mpm", OWN) is None  # particles cross cells
     declares = tmp_path / "declares.py"
     declares.write_text(Path(OWN).read_text().replace('"speed": 100}', '"speed": 100, "order": 1.5}'))
     assert of("cpdi", str(declares)).order == 1.5
@@ -124,14 +127,14 @@ def test_an_own_solution_has_the_order_of_its_file(tmp_path: Path) -> None:
 
 
 def test_only_u_in_rms_is_judged() -> None:
-    study = build(Sweep(cells=(8, 16, 32, 64), ppc=(4,)), "verify", "x")
+    study = fixtures.built(cells=(8, 16, 32, 64), ppc=(4,))
     assert [(d.quantity, d.norm) for d in study.plans if d.judged] == [("u", "rms")]
     assert {d.quantity for d in study.plans if d.expectation} == set(QUANTITIES)
     assert [r.courant for r in study.runs].count(0.2) == 1  # half the time step, for what is judged
 
 
 def test_the_study_of_all_methods_judges_each_on_each_solution() -> None:
-    study = build_methods(everything(), "verify methods", "methods")
+    study = build_methods(every_method(), LEVELS, (4,), "verify methods", "methods")
     judged = [(d.run.method, d.run.solution) for d in study.plans if d.judged]
     assert len(judged) == len(set(judged)) == len(available(METHODS)) * len(LEVELS)
     assert len({run.digest for run in study.runs}) == len(study.runs)
@@ -139,7 +142,7 @@ def test_the_study_of_all_methods_judges_each_on_each_solution() -> None:
 
 
 def test_a_comparison_of_two() -> None:
-    study = build_methods(Comparison(("cpdi", "gimp"), {"bar": (8, 16)}), "verify methods", "two")
+    study = build_methods(("cpdi", "gimp"), {"bar": (8, 16)}, (4,), "verify methods", "two")
     assert {(r.method, r.cells, r.courant) for r in study.runs} == {
         ("cpdi", 8, 0.4), ("cpdi", 16, 0.4), ("gimp", 8, 0.4), ("gimp", 16, 0.4), ("cpdi", 16, 0.2)
     }  # fmt: skip
@@ -148,7 +151,7 @@ def test_a_comparison_of_two() -> None:
 def test_the_table_and_its_json() -> None:
     import json
 
-    runner = CliRunner()
+    runner, app = CliRunner(), application("expectations")
     text = runner.invoke(app, ["expectations", "--solution", "bar"]).output
     assert "diverges" in text
     assert "2 (1.8\N{EN DASH}2.3)" in text

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mpm_verify.cases.column.case import gravity, setup
+from mpm_verify.cases.column.execute import gravity, setup
 from mpm_verify.cases.column.run import ColumnRun
 from mpm_verify.solver.model import HOOKS, Model, Observer
 from mpm_verify.solver.step import advance
