@@ -165,7 +165,9 @@ class Plain:
             F = self.strained(F, self.full(self.lumped(v, self.after, B)))
         p.F[:] = F
         LAW.update(p, dt)
-        return {"x": x, "v": v, "F": F, "sigma": p.sigma.copy()} | ({"B": B.reshape(-1, 4)} if B is not None else {})
+        return {"x": x, "v": v, "F": F, "sigma": p.sigma.copy()} | (
+            {"affine_velocity": B.reshape(-1, 4)} if B is not None else {}
+        )
 
 
 @every_order

@@ -13,7 +13,7 @@ from mpm_verify.cases.column.experiment import experiment
 from mpm_verify.cases.column.refined import Refined, Scattered, refinements, scatter
 from mpm_verify.cases.column.run import ColumnResult, ColumnStudy
 from mpm_verify.cases.harness.checks import Check, Examination, Remark
-from mpm_verify.cases.harness.store import Store
+from mpm_verify.cases.harness.store import Store, StoreError
 
 
 class ColumnRemark(StrEnum):
@@ -45,12 +45,17 @@ class ColumnAnalysis:
         """What decides the exit code."""
         return self.examination.checks
 
+    @property
+    def drawn(self) -> tuple[FinishedRun, ...]:
+        """Those that came to their end and whose curves can be read."""
+        return tuple(one for one in self.ran if one.curves)
+
 
 def examine(study: ColumnStudy, results: Mapping[str, ColumnResult], store: Store) -> ColumnAnalysis:
     """Judge what is stored."""
     ended = [(run, results[run.digest]) for run in study.runs if run.digest in results]
     ran = tuple(FinishedRun(run, one.values, curves(store, one)) for run, one in ended if one.status == "finished")
-    said = tuple(claims(ran, study.axes))
+    said = tuple(claims([one for one in ran if one.curves], study.axes))
     first = next(iter(results.values()), None)
     examination = Examination(
         f"column-{study.name}", study.title, study.command, tuple(findings(study, ran, said, len(ended))),
@@ -61,8 +66,11 @@ def examine(study: ColumnStudy, results: Mapping[str, ColumnResult], store: Stor
 
 
 def curves(store: Store, result: ColumnResult) -> dict[str, Any]:
-    """Columns over time, by name."""
-    arrays = store.arrays(result.digest)
+    """Columns over time, by name; none where they cannot be read."""
+    try:
+        arrays = store.arrays(result.digest)
+    except StoreError:
+        return {}
     return {name[6:]: np.asarray(values, float) for name, values in arrays.items() if name.startswith("curve_")}
 
 

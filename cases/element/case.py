@@ -78,18 +78,18 @@ def examine(study: Study[ElementRun], results: Mapping[str, ElementResult], stor
 def _one(study: Study[ElementRun], results: Sequence[ElementResult], store: Store, before: str) -> Examination:
     """The Examination of results that share their material."""
     run = results[0].run
-    tests = [one for result in results if result.run.test != PROPERTIES and (one := read(result, store))]
+    tests = [read(result, store) for result in results if result.run.test != PROPERTIES]
     known = tuple(check for result in results for check in result.checks)
     reads = [result.read for result in results if result.read]
     return examination(study, run, create(MATERIALS, run.material), tests, known, reads, results[0].environment, before)
 
 
-def read(result: ElementResult, store: Store) -> ElementStudy | None:
-    """A stored test; None where its curves cannot be read."""
+def read(result: ElementResult, store: Store) -> ElementStudy:
+    """A stored test; without curves where they cannot be read, for its errors stand in the Result."""
     try:
         arrays = store.arrays(result.digest)
     except StoreError:
-        return None
+        arrays = {}
     curve, exact = (
         {name[len(kind) + 1 :]: np.asarray(values) for name, values in arrays.items() if name.startswith(f"{kind}/")}
         for kind in ("curve", "exact")

@@ -29,8 +29,9 @@ def curves(studies: list[ElementStudy]) -> Curves:
     """`test/NAME` and `exact/NAME` columns, `errors/NAME`: steps, error; `kind/NAME`: what its axes are."""
     kept: Curves = {}
     for one in studies:
-        every = max(1, len(one.curve["s"]) // DRAWN)
-        kept[f"test/{one.test.name}"] = {name: values[::every] for name, values in one.curve.items()}
+        if one.curve:
+            every = max(1, len(one.curve["s"]) // DRAWN)
+            kept[f"test/{one.test.name}"] = {name: values[::every] for name, values in one.curve.items()}
         if one.truth is not None:
             kept[f"exact/{one.test.name}"] = one.truth
         errors = {"steps": np.array(one.steps, float), "error": np.array(one.errors)}

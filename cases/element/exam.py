@@ -53,7 +53,7 @@ def checks(law: Any, studied: ElementStudy) -> list[Check]:
         at = f"step {studied.failed.step} of {studied.failed.steps}"
         return [Check(group, f"early end, at {at}", float("nan"), 0.0, "absolute", "all steps solved")]
     finest = studied.errors[-1]
-    if studied.truth is not None:
+    if studied.source:
         second = 1e-6 * (1600 / studied.steps[-1]) ** 2  # what order 2 makes of 1e-6 in 1600 steps
         allowed = max(second, ROUND_OFF) if law.order == 2 else ROUND_OFF
         found.append(Check(group, "error at the end, finest", finest, allowed, "at most", studied.source))
@@ -144,7 +144,7 @@ def notes(law: Any, one: ElementStudy) -> list[Remark]:
 
 def beyond(law: Any, one: ElementStudy) -> float | None:
     """Fraction of the finest run's steps in which zz leaves the plane's range; None of a material that sees zz."""
-    if law.name not in PLANE_ALONE or len(one.curve["s"]) < 2:
+    if law.name not in PLANE_ALONE or len(one.curve.get("s", ())) < 2:
         return None
     sigma = np.column_stack([-one.curve["sx"], -one.curve["sy"], -one.curve["sz"], one.curve["tau"]])
     return float(np.mean(PLANE_ALONE[law.name](sigma[1:])))

@@ -111,6 +111,14 @@ class Store:
                 f"cannot read {path}: {error}; delete it and its .json file to run that run again"
             ) from error
 
+    def readable(self, digest: str) -> bool:
+        """Whether the arrays of that run can be read."""
+        try:
+            self.arrays(digest)
+        except StoreError:
+            return False
+        return True
+
     def _read(self, path: Path, adapter: TypeAdapter[Any]) -> Any:
         try:
             data = json.loads(path.read_bytes())
@@ -118,9 +126,9 @@ class Store:
                 raise StoreError(
                     f"{path} has format {data.get('format')}, this version reads {FORMAT}; use another --out folder"
                 )
-            if data.get("case") != self.case:
+            if data.get("case", self.case) != self.case:
                 raise StoreError(
-                    f"{path.parent} holds the case {data.get('case')}, not {self.case}; use another --out folder"
+                    f"{self.folder} holds the case {data['case']}, not {self.case}; use another --out folder"
                 )
             return adapter.validate_python(data)
         except FileNotFoundError as error:

@@ -12,7 +12,7 @@ from mpm_verify.cases.harness.store import Store, StoreError
 from mpm_verify.cases.harness.study import Study
 from mpm_verify.cases.objectivity.axes import BLOCK, KINEMATIC, Block
 from mpm_verify.cases.objectivity.block import blocks
-from mpm_verify.cases.objectivity.exam import examination
+from mpm_verify.cases.objectivity.exam import examination, unreadable
 from mpm_verify.cases.objectivity.execute import ObjectivityResult, execute
 
 __all__ = ["Result", "Run", "companions", "examine", "execute", "title"]
@@ -50,9 +50,10 @@ def examine(study: Study[Block], results: Mapping[str, ObjectivityResult], store
         named = {**blocks(base), KINEMATIC: replace(base, part=KINEMATIC)}
         stored = {name: results[run.digest] for name, run in named.items() if run.digest in results}
         arrays = {name: curves(store, result) for name, result in stored.items()}
-        if len(stored) == len(named) and all(arrays.values()):
+        if len(stored) == len(named):
             before = f"{base.cells} cells, {base.ppc} per cell: " if len(bases) > 1 else ""
-            found[before] = examination(study, base, stored, arrays, before)
+            make = examination if all(arrays.values()) else unreadable
+            found[before] = make(study, base, stored, arrays, before)
     return ObjectivityAnalysis(found)
 
 

@@ -11,8 +11,10 @@ from mpm_verify.cases.objectivity import block as full
 from mpm_verify.cases.objectivity import rates as kinematic
 from mpm_verify.cases.objectivity.axes import KINEMATIC, Block
 from mpm_verify.cases.objectivity.exact import ramped_column
-from mpm_verify.cases.objectivity.findings import ObjectivityRemark, findings
+from mpm_verify.cases.objectivity.findings import ObjectivityRemark, findings, lead
 from mpm_verify.solver.plugins import NEGATIVE_CONTROLS, available
+
+STORED = "Stored curves"  # group of what cannot be read
 
 
 def examination(
@@ -39,6 +41,24 @@ def examination(
         results[KINEMATIC].environment,
         kept,
     )
+
+
+def unreadable(
+    study: Study[Block],
+    block: Block,
+    results: Mapping[str, ResultRecord[Block]],
+    arrays: Mapping[str, Curves],
+    before: str = "",
+) -> Examination:
+    """The checks that need no curves, and an ERROR for each part whose curves cannot be read; nothing is drawn."""
+    known: tuple[Check, ...] = results[KINEMATIC].checks  # type: ignore[attr-defined]
+    missing = [Check(STORED, name, np.nan, 0.0, "absolute", "") for name, found in arrays.items() if not found]
+    checks = [*missing, *known]
+    return Examination(
+        study.name, study.title, study.command, (lead(block, checks, {}, []),),
+        tuple(replace(check, group=before + check.group) for check in checks), parameters(block), ORIGINS,
+        results[KINEMATIC].environment,
+    )  # fmt: skip
 
 
 def curves(block: Block, found: full.Found, prescribed: Curves) -> Curves:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from mpm_verify.cases.harness.checks import Examination
 from mpm_verify.cases.harness.store import StoreError
-from mpm_verify.reports.components.examined import Section, Sections, render
+from mpm_verify.reports.components.examined import Section, Sections, checks_table, render
 from mpm_verify.reports.components.page import Add
 from mpm_verify.reports.frames import Record
 
@@ -26,15 +26,22 @@ def page(record: Record, sections: Sections, kinds: Sequence[str] = ("svg", "pdf
 
 
 def every(found: Mapping[str, Examination], sections: Sections, add: Add) -> Sequence[Section]:
-    """The sections of each, with its name in front where there are several."""
+    """The sections of each, with its name in front where there are several; of one without curves its checks."""
     if len(found) == 1:
-        return sections(next(iter(found.values())), add)
-    parts = []
+        return of_one(next(iter(found.values())), sections, add)
+    parts: list[Section] = []
     for number, (name, one) in enumerate(found.items(), 1):
-        mine = sections(one, numbered(add, number))
+        mine = of_one(one, sections, numbered(add, number))
         heading = name.rstrip(": ")
         parts += [replace(part, key=f"{part.key}-{number}", heading=f"{heading}: {part.heading}") for part in mine]
     return parts
+
+
+def of_one(examination: Examination, sections: Sections, add: Add) -> Sequence[Section]:
+    """The sections of an Examination."""
+    if examination.curves:
+        return sections(examination, add)
+    return [Section("checks", "Checks", tables=[checks_table("Checks", examination.checks, group=True)])]
 
 
 def numbered(add: Add, number: int) -> Add:

@@ -58,7 +58,8 @@ def files(collapse: ColumnAnalysis, store: Store, folder: Path) -> None:
     """Snapshots of each run, see reports/export/vtk.py."""
     folder.mkdir(exist_ok=True)
     for run in collapse.study.runs:
-        if result := collapse.results.get(run.digest):
+        result = collapse.results.get(run.digest)
+        if result and store.readable(result.digest):
             arrays = store.arrays(result.digest)
             named = {
                 key[9:]: values for key, values in arrays.items() if key.startswith("snapshot_") and key != "snapshot_t"

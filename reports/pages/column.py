@@ -36,13 +36,15 @@ def sections(collapse: ColumnAnalysis, store: Store, add: Add) -> Sequence[Secti
     found = [summary(collapse, add)]
     if collapse.claims:
         found.append(said(collapse))
-    if collapse.ran:
+    if collapse.drawn:
         found += [motion(collapse, add), energy(collapse, add), budget(collapse, add)]
-        if collapse.refined or collapse.scattered:
-            found.append(refinement(collapse, add))
+    if collapse.refined or collapse.scattered:
+        found.append(refinement(collapse, add))
     ran = [(run, collapse.results[run.digest]) for run in collapse.study.runs if run.digest in collapse.results]
+    if seen := [(run, result) for run, result in ran if store.readable(result.digest)]:
+        found += [set_up(store, add, *seen[0]), films(collapse, store, add, seen)]
     if ran:
-        found += [set_up(store, add, *ran[0]), films(collapse, store, add, ran), alive(collapse)]
+        found.append(alive(collapse))
     return [*found, Section("checks", "Invariants, whatever the experiment says", tables=[
         checks_table("Checks", collapse.examination.checks, group=True)])]  # fmt: skip
 
@@ -99,7 +101,7 @@ def said(collapse: ColumnAnalysis) -> Section:
 
 def motion(collapse: ColumnAnalysis, add: Add) -> Section:
     """Fronts and final profiles."""
-    ran, labels = collapse.ran, [words.label(collapse.study, one.run) for one in collapse.ran]
+    ran, labels = collapse.drawn, [words.label(collapse.study, one.run) for one in collapse.drawn]
     return Section("motion", "Run-out", figures=[
         (add("front", draw.fronts(ran, labels), "Front against time; its final values are in the table of runs."),
          "Front against normalised time. Shaded: where the experiment's front rests; dashes: the times of that."),
@@ -111,8 +113,8 @@ def motion(collapse: ColumnAnalysis, add: Add) -> Section:
 def budget(collapse: ColumnAnalysis, add: Add) -> Section:
     """All of the energy of the first run and of the last."""
     figures = []
-    for place, key in {0: "first", len(collapse.ran) - 1: "last"}.items():
-        one, label = collapse.ran[place], words.label(collapse.study, collapse.ran[place].run)
+    for number, key in {0: "first", len(collapse.drawn) - 1: "last"}.items():
+        one, label = collapse.drawn[number], words.label(collapse.study, collapse.drawn[number].run)
         image = add(f"budget_{key}", draw.budget(one), f"Layers of the energy budget over time, {label}.")
         figures.append((image, f"{label[0].upper()}{label[1:]}. The line on top stays at 1 as the budget closes."))
     return Section("budget", "Where the energy goes", figures=figures)
@@ -120,7 +122,7 @@ def budget(collapse: ColumnAnalysis, add: Add) -> Section:
 
 def energy(collapse: ColumnAnalysis, add: Add) -> Section:
     """Energies of all."""
-    ran, labels = collapse.ran, [words.label(collapse.study, one.run) for one in collapse.ran]
+    ran, labels = collapse.drawn, [words.label(collapse.study, one.run) for one in collapse.drawn]
     figures = [
         (add(name, draw.energy(ran, labels, name), f"{name.capitalize()} energy of each run over time."),
          f"The paper's Figure 6: {name} energy.")

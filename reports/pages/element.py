@@ -23,7 +23,7 @@ def page(record: Record, vtk: bool = False) -> Path:
 
 def sections(examination: Examination, add: Add) -> Sequence[Section]:
     """A section a test, one for the errors, one for what is known of the material."""
-    names = [name.partition("/")[2] for name in examination.curves if name.startswith("test/")]
+    names = [name.partition("/")[2] for name in examination.curves if name.startswith("kind/")]
     noted = dict.fromkeys(finding.group for finding in examination.findings if finding.group)
     titles = dict(zip(names, noted, strict=True))
     tests = [test(examination, name, titles[name], add) for name in names]
@@ -43,6 +43,14 @@ def sections(examination: Examination, add: Add) -> Sequence[Section]:
 
 def test(examination: Examination, name: str, title: str, add: Add) -> Section:
     """Stress path, stress and volume against strain, with the closed form below where there is one."""
+    images = figures(examination, name, title, add) if f"test/{name}" in examination.curves else []
+    checks = [check for check in examination.checks if check.group == title]
+    tables = [checks_table("Checks", checks)] if checks else []
+    return Section(name, title, [" ".join(notes(examination, title))], images, tables)
+
+
+def figures(examination: Examination, name: str, title: str, add: Add) -> list[tuple[Image, str]]:
+    """The figures of one test, each with its caption."""
     curves = examination.curves
     curve, exact = curves[f"test/{name}"], curves.get(f"exact/{name}")
     shear, strength = bool(curves[f"kind/{name}"]["shear"][0]), curves.get("strength")
@@ -64,9 +72,7 @@ def test(examination: Examination, name: str, title: str, add: Add) -> Section:
     if np.abs(curve["ev"]).max() > 1e-9:
         volume = draw.volume(curve, exact, x, shear, points.get("ev", ()))
         images.append((add(f"{name}_volume", volume, f"{title}: volume strain."), "Volume strain."))
-    checks = [check for check in examination.checks if check.group == title]
-    tables = [checks_table("Checks", checks)] if checks else []
-    return Section(name, title, [" ".join(notes(examination, title))], images, tables)
+    return images
 
 
 def steps(examination: Examination, titles: dict[str, str], add: Add) -> Section:
