@@ -14,6 +14,7 @@ from mpm_verify.cases.harness.study import Arrays, QuantityPlan, ResultRecord, S
 from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.reports import words
 from mpm_verify.solver.failure import FailureKind
+from mpm_verify.solver.plugins import label
 
 Run = Any  # of any case
 USUAL = ("method", "solution", "ppc")  # fields that name a refinement in every table
@@ -69,7 +70,8 @@ class Record:
     def label(self, run: Run, solution: bool = True) -> str:
         """Name of the refinement of a run on a page: method and particle count, and what else varies in the study."""
         several = solution and len(self.solutions) > 1
-        more = [run.solution] * several + [f"{name} {getattr(run, name)}" for name in self.varied]
+        more = [label(run.solution)] if several else []
+        more += [f"{name} {getattr(run, name)}" for name in self.varied]
         return ", ".join([words.series(run), *more])
 
     def series_of(self, declared: QuantityPlan[Any]) -> Series:
@@ -153,3 +155,12 @@ def joined(*parts: Mapping[str, Any]) -> dict[str, Any]:
             raise ValueError(f"two columns of a table have the name {sorted(both)[0]!r}")
         row |= part
     return row
+
+
+def flat(values: Mapping[str, Any]) -> dict[str, Any]:
+    """The same with a pair as two columns, NAME_x and NAME_y."""
+    found: dict[str, Any] = {}
+    for name, value in values.items():
+        pair = isinstance(value, tuple)
+        found |= dict(zip((f"{name}_x", f"{name}_y"), value, strict=True)) if pair else {name: value}
+    return found

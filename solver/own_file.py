@@ -74,7 +74,7 @@ def plain(value: Any, family: str, seen: set[int]) -> str:
         return repr([plain(item, family, seen) for item in value])
     if isinstance(value, set | frozenset):
         return repr(sorted(plain(item, family, seen) for item in value))
-    if hasattr(value, "tobytes") and hasattr(value, "dtype"):
+    if (np := sys.modules.get("numpy")) and isinstance(value, np.ndarray | np.generic):
         return "" if value.dtype.hasobject else repr((str(value.dtype), value.shape, value.tobytes()))
     kind = value if isinstance(value, type) else type(value)
     if isinstance(value, dict):

@@ -11,13 +11,13 @@ from pathlib import Path
 
 import pytest
 from fixtures_tree import Tree, copied, forget
+from mpm_verify.cases.mms.sweep import Sweep, build
 
 from mpm_verify.cases.column.run import ColumnRun
 from mpm_verify.cases.harness.identity import identity
 from mpm_verify.cases.harness.runner import RunnerError, process_pool, run_study
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.cases.harness.study import Run
-from mpm_verify.cases.mms.sweep import Sweep, build
 from mpm_verify.solver import own_file
 from mpm_verify.solver.plugins import MATERIALS, METHODS, SOLUTIONS, available
 from mpm_verify.solver.source_hash import closure, parse

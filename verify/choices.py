@@ -16,9 +16,9 @@ def completion(package: str) -> Callable[[str], list[str]]:
     return complete
 
 
-def choices(package: str) -> str:
-    """The names, for a help text."""
-    return ", ".join(available(package))
+def choices(package: str, own: bool = False) -> str:
+    """The names, for a help text, and that a user's file is taken."""
+    return ", ".join(available(package)) + "; or a file of your own" * own
 
 
 def integers(text: str, option: str) -> tuple[int, ...]:

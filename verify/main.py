@@ -1,60 +1,77 @@
-"""The command `verify`: one file a subcommand in verify/commands, found by its name; nothing heavy is imported here."""
+"""The command `verify`: one file a subcommand in verify/commands, found by its name.
+
+Nothing is imported here that a help text does not need: `verify --help` reads the first line of each command's file.
+"""
 
 import contextlib
 import os
 import sys
-import traceback
-from importlib import import_module
-from pathlib import Path
-from typing import Annotated, Any
 
-import typer
+from mpm_verify.verify.exits import DEFECT, STOPPED, USAGE
 
-from mpm_verify.verify.run import DEFECT, USAGE
+FIRST = ("mms", "methods", "graded", "column", "sweep", "material", "objectivity")  # in the help, in this order
+HERE = os.path.dirname(os.path.abspath(__file__))
+CASES = os.path.join(os.path.dirname(HERE), "cases")
+HELP = """\
+Usage: verify COMMAND [OPTIONS]
 
-STOPPED = 130
-COMMANDS = ("mms", "methods", "graded", "column", "sweep", "element", "objectivity")  # first in the help, in this order
+Verification of the material point method: manufactured solutions, observed orders, verdicts, reports.
+
+Commands (verify COMMAND --help says more):
+{commands}
+
+Options: -h, --help, --version, --install-completion, --show-completion
+
+Exit codes: 0 pass, 1 fail, 2 usage or input, 3 inconclusive or nothing judged, 4 nothing could be judged because runs
+ended in error, or a defect of verify.
+"""
 
 
-def files() -> list[str]:
-    """Files of the commands: those of COMMANDS first, then by name."""
-    there = sorted(file.stem for file in Path(__file__).with_name("commands").glob("[a-z]*.py"))
-    return [*(name for name in COMMANDS if name in there), *(name for name in there if name not in COMMANDS)]
+def files() -> dict[str, str]:
+    """File of each command by its name: those of FIRST first; a case without a command file has its `case.py`."""
+    own = {file[:-3]: os.path.join(HERE, "commands", file) for file in os.listdir(os.path.join(HERE, "commands"))
+           if file.endswith(".py") and not file.startswith("_")}  # fmt: skip
+    found = {name: os.path.join(CASES, name, "case.py") for name in os.listdir(CASES)}
+    found = {name: file for name, file in found.items() if os.path.exists(file)} | own
+    return {name: found[name] for name in sorted(found, key=lambda name: (name not in FIRST, rank(name)))}
 
 
-def application(asked: str = "") -> Any:
+def rank(name: str) -> tuple[int, str]:
+    """Place in the help."""
+    return (FIRST.index(name) if name in FIRST else len(FIRST), name)
+
+
+def help_text() -> str:
+    """All commands, a line each: the first line of their files."""
+    lines = []
+    for name, file in files().items():
+        with open(file, encoding="utf-8") as text:
+            first = text.readline().strip().strip('"')
+        told = first.partition("`: ")[2] or first
+        lines.append(f"  {name:13}{told[:1].upper()}{told[1:]}")
+    return HELP.format(commands="\n".join(lines))
+
+
+def application(asked: str = "") -> object:
     """The Typer application: with the one command that is asked for, or with all of them."""
+    from importlib import import_module
+
+    import typer
+
     app = typer.Typer(name="verify", rich_markup_mode=None, pretty_exceptions_enable=False,
                       context_settings={"help_option_names": ["-h", "--help"]})  # fmt: skip
-    app.callback(invoke_without_command=True)(root)
-    for name in [asked] if asked in files() else files():
-        import_module(f"mpm_verify.verify.commands.{name}").add(app)
+    app.callback()(root)
+    known = files()
+    for name in [asked] if asked in known else known:
+        if known[name].startswith(CASES):
+            import_module("mpm_verify.verify.commands._case").add(app, name)
+        else:
+            import_module(f"mpm_verify.verify.commands.{name}").add(app)
     return app
 
 
-def print_version(wanted: bool) -> None:
-    """Version and end."""
-    if wanted:
-        from importlib.metadata import version
-
-        print(f"verify {version('mpm-verify')}")
-        raise typer.Exit
-
-
-def root(
-    context: typer.Context,
-    version: Annotated[
-        bool, typer.Option("--version", callback=print_version, is_eager=True, help="Print it.")
-    ] = False,
-) -> None:
-    """Verification of the material point method: manufactured solutions, observed orders, verdicts, reports.
-
-    Exit codes: 0 pass, 1 fail, 2 usage or input, 3 inconclusive or nothing judged, 4 nothing could be judged because
-    runs ended in error, or a defect of verify.
-    """
-    if context.invoked_subcommand is None:
-        typer.echo(context.get_help())
-        raise typer.Exit(USAGE)
+def root() -> None:
+    """Verification of the material point method: manufactured solutions, observed orders, verdicts, reports."""
 
 
 def main() -> None:
@@ -62,21 +79,50 @@ def main() -> None:
 
     A defect of this program ends with 4, and with its traceback: 1 would read as a verdict.
     """
+    asked = sys.argv[1:2]
+    if asked in ([], ["-h"], ["--help"]):
+        sys.exit(told(help_text(), 0 if asked else USAGE))
+    if asked == ["--version"]:
+        from importlib.metadata import version
+
+        sys.exit(told(f"verify {version('mpm-verify')}\n", 0))
+    sys.exit(called(asked[0]))
+
+
+def called(asked: str) -> int:
+    """Run a command; its exit code."""
+    from contextlib import suppress
+
+    import typer
+
     try:
-        code = application(next(iter(sys.argv[1:]), ""))(standalone_mode=False)
+        code = application(asked)(standalone_mode=False)  # type: ignore[operator]
     except typer.TyperException as error:
         message = error.format_message() if hasattr(error, "format_message") else str(error)
-        code = complain(message, getattr(error, "exit_code", USAGE))
-        code = USAGE if code == 1 else code
+        code = complain(message, USAGE if getattr(error, "exit_code", 1) == 1 else error.exit_code)
     except (typer.Abort, KeyboardInterrupt):
         code = complain("stopped; what was finished is stored, and the same command goes on from there", STOPPED)
     except Exception:
-        with contextlib.suppress(OSError, ValueError, AttributeError):
+        with suppress(OSError, ValueError, AttributeError):
+            import traceback
+
             traceback.print_exc()
         code = complain(
             "this is a defect of verify, not of what it verifies; please report it with the lines above", DEFECT
         )
-    sys.exit(code if isinstance(code, int) else 0)
+    return code if isinstance(code, int) else 0
+
+
+def told(text: str, code: int) -> int:
+    """Print, to somebody who may have gone; gives the exit code back, or USAGE where nothing can be written."""
+    try:
+        sys.stdout.write(text)
+        sys.stdout.flush()
+    except BrokenPipeError:
+        return code
+    except (OSError, ValueError, AttributeError) as error:
+        return complain(f"cannot write to standard output: {getattr(error, 'strerror', None) or error}")
+    return code
 
 
 def complain(message: str, code: int = USAGE) -> int:
@@ -84,7 +130,7 @@ def complain(message: str, code: int = USAGE) -> int:
     if message.startswith("No such command"):
         message = f"{message} Choose from {', '.join(files())}."
     with contextlib.suppress(OSError, ValueError, AttributeError):
-        print(f"verify: {' '.join(message.split())}", file=sys.stderr)
+        print(f"verify: {' '.join(message.split())}", file=sys.stderr, flush=True)
     return code
 
 

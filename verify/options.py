@@ -109,7 +109,7 @@ def option(item: Any, hints: Mapping[str, Any], usual: Mapping[str, Any]) -> Any
     plugins, words = item.metadata.get("plugins", ""), get_args(hints[item.name])
     text = item.metadata.get("help", "")
     if plugins:
-        text += f" {choices(plugins)}; parameters as name:key=value."
+        text += f" {choices(plugins, own=True)}; parameters as name:key=value."
     complete = completion(plugins) if plugins else None
     if words and all(isinstance(word, str) for word in words):
         complete = lambda incomplete: [word for word in words if word.startswith(incomplete)]  # noqa: E731

@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
+from mpm_verify.verify.exits import DEFECT, USAGE
+
 if TYPE_CHECKING:
     from mpm_verify.cases.harness.study import Study
     from mpm_verify.reports.frames import Record
@@ -22,7 +24,7 @@ HOUR = 3600.0
 UPDATES = 3e6  # particle updates a second of one process, on the slow side
 PARTICLE, NODE, PROCESS = 500.0, 200.0, 3e8  # bytes: of a particle, of a node, of a process
 MOST_RUNS = 10_000
-USAGE, DEFECT = 2, 4  # exit codes beside those of cases/harness/analysis.py
+
 NOT_REPEATED = ("--out", "--junit", "--json", "--jobs", "--threads", "--summary", "--page", "--no-page", "--yes",
                 "--dry-run", "--vtk", "--no-vtk")  # fmt: skip
 

@@ -1,4 +1,4 @@
-"""The granular column as a case: its contract (cases/harness/case.py); what it is stands in execute.py."""
+"""The granular column as a case: its contract (cases/harness/contract.py); what it is stands in execute.py."""
 
 from collections.abc import Sequence
 from dataclasses import replace

@@ -2,7 +2,7 @@
 
 Each test is run with once to sixteen times the steps; errors and orders are those of its end. What is known of a model
 beside curves (tables, limits, invariants) is a test of its own, `properties`.
-The contract of a case is told in cases/harness/case.py.
+The contract of a case is told in cases/harness/contract.py.
 """
 
 from collections.abc import Mapping, Sequence

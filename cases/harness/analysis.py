@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from mpm_verify.cases.harness.case import case_named
 from mpm_verify.cases.harness.checks import Check
+from mpm_verify.cases.harness.contract import case_named
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.cases.harness.study import ResultRecord, Study
 from mpm_verify.cases.harness.verdicts import Finding, findings

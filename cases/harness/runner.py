@@ -13,7 +13,7 @@ from multiprocessing.queues import SimpleQueue as Queue
 from pathlib import Path
 from typing import Any, ClassVar, TypeVar
 
-from mpm_verify.cases.harness.case import case_named
+from mpm_verify.cases.harness.contract import case_named
 from mpm_verify.cases.harness.store import Store, StoreError
 
 T = TypeVar("T")

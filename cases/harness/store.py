@@ -21,7 +21,7 @@ from zipfile import BadZipFile
 import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
-from mpm_verify.cases.harness.case import adapters
+from mpm_verify.cases.harness.contract import adapters
 from mpm_verify.cases.harness.study import FORMAT, Arrays
 from mpm_verify.solver.plugins import CASES, available
 

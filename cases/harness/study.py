@@ -1,7 +1,7 @@
 """What is run and what is expected of it: the records that every case has, written by the store and read by reports.
 
 A case adds its own fields: its Run is a frozen dataclass below RunRecord whose fields are the axes that a study can
-have, its Result one below ResultRecord (see cases/harness/case.py).
+have, its Result one below ResultRecord (see cases/harness/contract.py).
 """
 
 from dataclasses import dataclass, field, fields

@@ -1,6 +1,6 @@
 """The MMS convergence case: a manufactured solution run on one grid, with the errors of u, v, F and sigma.
 
-The contract of a case is told in cases/harness/case.py.
+The contract of a case is told in cases/harness/contract.py.
 """
 
 from collections.abc import Sequence

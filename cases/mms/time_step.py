@@ -1,5 +1,6 @@
 """The time steps of a study against the stability limit of the solver, before anything runs."""
 
+import shlex
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from math import ceil, floor, log10
@@ -63,7 +64,7 @@ def refusal(specification: str, solution: Any, c: float, v: float, courants: Seq
     if name:
         file, given = split(specification)
         others = [item for item in given.split(",") if item and not item.startswith(f"{name}=")]
-        ways.append(f"--solution {file}:{','.join([*others, f'{name}={faster:g}'])}")
+        ways.append(f"--solution {shlex.quote(f'{file}:' + ','.join([*others, f'{name}={faster:g}']))}")
     elif is_file(specification):
         ways.append(f'"speed": {faster:g} in domain()')
     return (

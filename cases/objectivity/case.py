@@ -1,6 +1,6 @@
 """Frame indifference: the paper's rotated block against its closed form, objective rates, and negative controls.
 
-The contract of a case is told in cases/harness/case.py.
+The contract of a case is told in cases/harness/contract.py.
 """
 
 from collections.abc import Mapping, Sequence

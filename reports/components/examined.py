@@ -34,20 +34,29 @@ Sections = Callable[[Examination, Add], Sequence[Section]]
 
 
 def render(
-    folder: Path, examination: Examination, sections: Sections, kinds: Sequence[str] = ("svg", "pdf", "png")
+    folder: Path,
+    examination: Examination,
+    sections: Sections,
+    kinds: Sequence[str] = ("svg", "pdf", "png"),
+    outcome: str = "",
+    said: str = "",
 ) -> Path:
     """Write report.html, figures/ in these kinds, tables/checks.csv; `sections` draws what is special.
+
+    `outcome` and `said` stand on top: usual are those of the examination's checks, and what came out of it in words.
 
     Raises StoreError.
     """
     try:
         for name in ("figures", "tables"):
             (folder / name).mkdir(parents=True, exist_ok=True)
-        _write_csv(folder / "tables" / "checks.csv", examination.checks)
+        if examination.checks:
+            _write_csv(folder / "tables" / "checks.csv", examination.checks)
         missed = [check for check in examination.checks if check.outcome != "PASS"]
         text = template("examination.html.j2").render(
             examination=examination,
-            lead=lead(examination),
+            lead=said or lead(examination),
+            outcome=outcome or str(examination.outcome),
             missed=checks_table("Checks that did not pass", missed, group=True) if missed else None,
             sections=sections(examination, adder(folder / "figures", kinds=kinds)),
             parameters=Table(

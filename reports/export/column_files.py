@@ -1,6 +1,6 @@
 """What a study of the column leaves as files beside its page: numbers and curves as CSV, snapshots for ParaView."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -8,10 +8,9 @@ import pandas as pd
 
 from mpm_verify.cases.column.exam import ColumnAnalysis
 from mpm_verify.cases.column.exam import curves as read_curves
-from mpm_verify.cases.column.run import ColumnRun
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.reports.export.vtk import write_series
-from mpm_verify.reports.frames import joined
+from mpm_verify.reports.frames import flat, joined
 from mpm_verify.reports.sentences import column as words
 from mpm_verify.reports.sentences import failures
 
@@ -26,7 +25,7 @@ def tables(collapse: ColumnAnalysis, store: Store, folder: Path) -> None:
     for run in collapse.study.runs:
         result = collapse.results.get(run.digest)
         if result:
-            parameters = plain(run, collapse.study.axes)
+            parameters = flat({name: getattr(run, name) for name in collapse.study.axes})
             failure = failures.cause(result.failure) if result.failure else ""
             head = {"digest": run.digest, "status": result.status, "failure": failure}
             rows.append(joined(head, parameters, measured(result.values)))
@@ -36,17 +35,6 @@ def tables(collapse: ColumnAnalysis, store: Store, folder: Path) -> None:
     pd.DataFrame(rows).to_csv(folder / "runs.csv", index=False)
     if curves:
         pd.concat(curves).to_csv(folder / "curves.csv", index=False, float_format="%.7g")
-
-
-def plain(run: ColumnRun, axes: Sequence[str]) -> dict[str, Any]:
-    """The swept parameters of a run, by the names of its fields; a pair is two columns."""
-    found: dict[str, Any] = {}
-    for name in axes:
-        value = getattr(run, name)
-        found |= (
-            {f"{name}_{k}": v for k, v in zip("xy", value, strict=True)} if isinstance(value, tuple) else {name: value}
-        )
-    return found
 
 
 def measured(values: Mapping[str, Any]) -> dict[str, Any]:

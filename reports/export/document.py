@@ -13,8 +13,8 @@ from typing import Any
 from pydantic import TypeAdapter
 
 from mpm_verify.cases.harness.axes import particle_axes, position_axes, time_axes
-from mpm_verify.cases.harness.case import case_named
 from mpm_verify.cases.harness.checks import Check
+from mpm_verify.cases.harness.contract import case_named
 from mpm_verify.cases.harness.study import ResultRecord
 from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.cases.judging.records import Ended
@@ -133,7 +133,7 @@ class RunRow:
 
 @dataclass(frozen=True)
 class Document:
-    """A study: `axes` are u in rms along the axes beside the cells; `more` is what the case adds."""
+    """A study: `axes` are what is judged along the axes beside the cells; `more` is what the case adds."""
 
     version: int
     case: str
@@ -227,23 +227,25 @@ def failure(found: Failure) -> FailureRow:
 
 
 def axes(record: Record) -> dict[str, list[Row]]:
-    """u in rms along the axes beside the cells; an axis with one value is empty."""
+    """What is judged along the axes beside the cells; an axis with one value is empty."""
     runs, results = record.study.runs, record.results
     if not record.study.plans:
         return {"time": [], "particles": [], "position": []}
+    plan = next((plan for plan in record.study.plans if plan.judged), record.study.plans[0])
+    of = plan.quantity, plan.norm
     times = [
         joined(record.columns(a.run), {"cells": a.run.cells, "courants": list(a.courants), "errors": list(a.errors)})
         | {"orders": list(a.orders), "shares": list(a.shares)}
-        for a in time_axes(runs, results)
+        for a in time_axes(runs, results, *of)
     ]
     particles = [
         {key: value for key, value in record.columns(a.run).items() if key != "ppc"}
         | {"cells": a.run.cells, "ppc": list(a.ppc), "errors": list(a.errors), "orders": list(a.orders)}
-        for a in particle_axes(runs, results)
+        for a in particle_axes(runs, results, *of)
     ]
     positions = [
         joined(record.columns(a.run), {"cells": list(a.cells), "errors": [list(errors) for errors in a.errors]})
-        for a in position_axes(runs, results)
+        for a in position_axes(runs, results, *of)
     ]
     return {"time": times, "particles": particles, "position": positions}
 

@@ -11,7 +11,7 @@ from mpm_verify.cases.harness.axes import crossed, particle_axes, position_axes,
 from mpm_verify.cases.harness.study import Head, QuantityPlan
 from mpm_verify.cases.mms.run import NORMS, QUANTITIES
 from mpm_verify.reports.figures.local_orders import orders as pairs
-from mpm_verify.reports.frames import Record, joined
+from mpm_verify.reports.frames import Record, flat, joined
 from mpm_verify.reports.sentences import commands, failures
 from mpm_verify.reports.sentences import stalls as told
 from mpm_verify.reports.tables.cost import compares, costs
@@ -112,8 +112,7 @@ def runs(record: Record) -> Rows:
     """A row a run of the study, done or not, with every parameter."""
     rows = []
     for run in record.study.runs:
-        row: dict[str, Any] = asdict(run) | {"status": "not run"}
-        row["offset_x"], row["offset_y"] = row.pop("offset")
+        row: dict[str, Any] = flat(asdict(run)) | {"status": "not run"}
         result = record.result(run)
         if result is not None:
             row |= {"status": result.status, "steps": result.steps, "particles": result.particles, "dt": result.dt}

@@ -6,7 +6,7 @@ from time import perf_counter
 import pytest
 from test_speed import paired, report
 
-from mpm_verify.cases.column.case import gravity, setup
+from mpm_verify.cases.column.execute import gravity, setup
 from mpm_verify.cases.column.measure import Measure
 from mpm_verify.cases.column.run import ColumnRun
 from mpm_verify.solver._jit import use_threads

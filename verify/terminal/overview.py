@@ -26,6 +26,6 @@ def show_overview(record: Record, page: Path | None) -> None:
     out.print(table)
     for finding in record.findings:
         if finding.plan.judged and finding.verdict.outcome != "PASS":
-            verdict(out, record.study, finding, several=True)
+            verdict(out, record, finding)
     out.print(f"\n{summary(record)}")
     where(out, page, "\nVerdicts, error against cost, where orders fall and why, and how it was made:")

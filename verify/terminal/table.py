@@ -10,7 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from mpm_verify.cases.harness.axes import middle
-from mpm_verify.cases.harness.study import QuantityPlan, Study
+from mpm_verify.cases.harness.study import QuantityPlan
 from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.cases.judging.stall import Stall
 from mpm_verify.reports.frames import Record
@@ -36,16 +36,16 @@ def show(record: Record, page: Path | None, console: Console | None = None) -> N
     if not out.is_terminal:
         out.width = max(out.width, 100)
     out.print(f"\n[bold]{study.title}[/bold]")
-    out.print(errors_table([f for f in found if f.plan.judged or (f.plan.quantity, f.plan.norm) == ALWAYS]))
+    shown = [f for f in found if f.plan.judged or (f.plan.quantity, f.plan.norm) == ALWAYS]
+    out.print(errors_table(record, shown))
     if most := max((len(level.errors) for f in found for level in f.levels), default=1) - 1:
         out.print(f"errors are geometric means of up to {most + 1} runs with the particles elsewhere in their cells")
-    several = len({finding.plan.run.solution for finding in found}) > 1
     for finding in found:
         if finding.plan.judged:
-            verdict(out, study, finding, several)
+            verdict(out, record, finding)
     for finding in found:
         if finding.stall:
-            out.print(stall(finding, finding.stall, several))
+            out.print(stall(record, finding, finding.stall))
     if not any(f.plan.judged for f in found):
         out.print("INCONCLUSIVE: nothing here has a registered expectation, so nothing is judged.")
     where(out, page, "\nMore quantities and norms, figures, and how it was made:")
@@ -58,26 +58,33 @@ def where(out: Console, page: Path | None, words: str = "") -> None:
         out.print(f"report: {page}", soft_wrap=True)
 
 
-def errors_table(found: Sequence[Finding]) -> Table:
+def errors_table(record: Record, found: Sequence[Finding]) -> Table:
     """Error, local order, and faces of cells that a particle passed, at each cell count; a failed run by its reason."""
     table = Table(box=None, pad_edge=False, header_style="dim")
-    several = len({finding.plan.run.solution for finding in found}) > 1
-    for name in (*(("solution",) if several else ()), "method", "per cell", "quantity", "cells"):
-        table.add_column(name, justify="right" if name in ("per cell", "cells") else "left")
+    names = {"ppc": "per cell"} | {"quantity": "quantity", "cells": "cells"}
+    heads = [*columns(record, found[0].plan), "quantity", "cells"] if found else ["quantity", "cells"]
+    for name in heads:
+        table.add_column(names.get(name, name), justify="right" if name in ("ppc", "cells") else "left")
     for name in ("error", "order", "crossings"):
         table.add_column(name, justify="right")
     table.add_column("")
     for finding in found:
-        for number, row in enumerate(rows(finding)):
-            solution = label(finding.plan.run.solution) if number == 0 else ""
-            table.add_row(*((solution,) if several else ()), *row)
+        for row in rows(record, finding):
+            table.add_row(*row)
     return table
 
 
-def rows(finding: Finding) -> Iterator[tuple[str, ...]]:
+def columns(record: Record, plan: QuantityPlan[Any]) -> dict[str, str]:
+    """What names a refinement, the solution only where there are several."""
+    found = {name: label(str(value)) for name, value in record.columns(plan.run).items()}
+    return found if len(record.solutions) > 1 else {name: text for name, text in found.items() if name != "solution"}
+
+
+def rows(record: Record, finding: Finding) -> Iterator[tuple[str, ...]]:
     """A row a level; names once a block."""
-    d, orders = finding.plan, iter(finding.verdict.local_orders)
-    first, earlier = (label(d.run.method), str(d.run.ppc), f"{d.quantity} {d.norm}"), False
+    plan, orders = finding.plan, iter(finding.verdict.local_orders)
+    first: tuple[str, ...] = (*columns(record, plan).values(), f"{plan.quantity} {plan.norm}")
+    earlier = False
     for level, passed in zip_longest(finding.levels, finding.crossings):
         cells, faces = f"{1 / level.h:.0f}", "" if passed is None else f"{passed:.1f}"
         if level.ended:
@@ -86,7 +93,7 @@ def rows(finding: Finding) -> Iterator[tuple[str, ...]]:
             local = order(next(orders, None)) if earlier else ""
             yield (*first, cells, f"{middle(level.errors):.3e}", local, faces, "")
             earlier = True
-        first = ("", "", "")
+        first = ("",) * len(first)
 
 
 def order(local: float | None) -> str:
@@ -94,33 +101,33 @@ def order(local: float | None) -> str:
     return "" if local is None else f"{local:.2f}"
 
 
-def verdict(out: Console, study: Study[Any], finding: Finding, several: bool = False) -> None:
+def verdict(out: Console, record: Record, finding: Finding) -> None:
     """Print the verdict in words, and the command that would decide on a line of its own, to be copied whole."""
-    out.print(sentence(finding, several))
-    if command := commands.command(study, finding):
+    out.print(sentence(record, finding))
+    if command := commands.command(record.study, finding):
         out.print(f"  this would decide: {command}", soft_wrap=True, markup=False)
 
 
-def sentence(finding: Finding, several: bool = False) -> Text:
+def sentence(record: Record, finding: Finding) -> Text:
     """The verdict in words."""
     d, v = finding.plan, finding.verdict
     expected = f", {verdicts.expected(d.expectation)} expected" if d.expectation else ""
     text = Text(f"\n{v.outcome}", STYLES[v.outcome])
-    text.append(f"  {named(d, several)}{expected}: {verdicts.said(v.reason)}.", "not bold default")
+    text.append(f"  {named(record, d)}{expected}: {verdicts.said(v.reason)}.", "not bold default")
     return text
 
 
-def named(declared: QuantityPlan[Any], several: bool) -> str:
-    """What a sentence is about, with its solution if the study has several."""
-    solution = f" on {label(declared.run.solution)}" if several else ""
-    return (
-        f"{label(declared.run.method)}{solution}, {declared.run.ppc} per cell, {declared.quantity} in {declared.norm}"
-    )
+def named(record: Record, plan: QuantityPlan[Any]) -> str:
+    """What a sentence is about: the method, what else names its refinement, and the quantity."""
+    names = columns(record, plan)
+    method, solution, ppc = (names.pop(key, "") for key in ("method", "solution", "ppc"))
+    rest = [f"{name} {value}" for name, value in names.items()] + [f"{ppc} per cell"] * bool(ppc)
+    return ", ".join([f"{method}{f' on {solution}' if solution else ''}", *rest, f"{plan.quantity} in {plan.norm}"])
 
 
-def stall(finding: Finding, found: Stall, several: bool = False) -> Text:
+def stall(record: Record, finding: Finding, found: Stall) -> Text:
     """Where the order falls and what explains it; what does not is in the report."""
     text = Text("\nSTALL", "bold")
-    text.append(f"  {named(finding.plan, several)}: {stalls.where(found)}. ", "not bold default")
+    text.append(f"  {named(record, finding.plan)}: {stalls.where(found)}. ", "not bold default")
     text.append(" ".join(stalls.reasons(found)), "not bold default")
     return text

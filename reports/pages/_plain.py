@@ -1,0 +1,119 @@
+"""The page that every case has which draws none of its own: verdicts, errors and orders, a figure, checks, runs."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from matplotlib import rc_context
+from matplotlib.figure import Figure
+
+from mpm_verify.cases.harness.checks import Examination
+from mpm_verify.cases.harness.verdicts import Finding
+from mpm_verify.reports import words
+from mpm_verify.reports.components.cards import summary
+from mpm_verify.reports.components.examined import Section, checks_table, render
+from mpm_verify.reports.components.page import Add
+from mpm_verify.reports.components.show import Table
+from mpm_verify.reports.figures import style
+from mpm_verify.reports.figures.convergence import cell_axis
+from mpm_verify.reports.frames import Record
+from mpm_verify.reports.sentences import commands, failures, verdicts
+from mpm_verify.reports.tables import plain
+
+
+def page(record: Record, vtk: bool = False, more: Sequence[Section] = ()) -> Path:
+    """Write the page of a study, its figures and tables; its path. `more` sections come before the runs.
+
+    Raises StoreError.
+    """
+    study, found = record.study, record.analysis
+    first = next(iter(record.results.values()), None)
+    examination = Examination(
+        study.name, study.title, study.command, (), found.checks, dict(first.parameters) if first else {}, {},
+        first.environment if first else {},
+    )  # fmt: skip
+    made = render(
+        record.store.folder, examination, lambda _, add: [*sections(record, add), *more, runs(record)],
+        outcome=str(found.outcome), said=summary(record) if study.plans else "",
+    )  # fmt: skip
+    plain.write(record, record.store.folder / "tables")
+    return made
+
+
+def sections(record: Record, add: Add) -> list[Section]:
+    """Verdicts with their figure, errors and orders, and checks, as far as there are some."""
+    found = []
+    if record.study.plans:
+        images = [(add(f"error_{q}_{n}", errors(record, q, n), f"Error of {q} against cell size."),
+                   f"Error of the {q} ({n}) against cell size; the dashed line has the expected order.")
+                  for q, n in dict.fromkeys((f.plan.quantity, f.plan.norm) for f in record.findings)]  # fmt: skip
+        found.append(Section("verdicts", "Verdicts", record.study.words, images, [verdict_table(record)]))
+        found.append(Section("errors", "Errors and orders", tables=[levels(record, f) for f in record.findings]))
+    if record.analysis.checks:
+        found.append(Section("checks", "Checks", tables=[checks_table("Checks", record.analysis.checks, group=True)]))
+    return found
+
+
+def verdict_table(record: Record) -> Table:
+    """What is judged, what came out, and why."""
+    head = ("refinement", "quantity", "verdict", "order", "interval", "expected", "reason")
+    rows = []
+    for f in record.findings:
+        plan, v = f.plan, f.verdict
+        said = str(v.outcome) if plan.judged else "shown"
+        rows.append((record.label(plan.run), f"{plan.quantity}, {plan.norm}", said, words.order(v.observed),
+                     words.interval(v.interval), verdicts.registered(plan.expectation),
+                     commands.reason(record.study, f)))  # fmt: skip
+    return Table("Verdicts", head, tuple(rows), texts=("quantity", "verdict", "expected", "reason"))
+
+
+def levels(record: Record, found: Finding) -> Table:
+    """A row a cell size."""
+    rows = [
+        (str(row["cells"]), words.sci(row["error"]), words.order(row["order"]), str(row["ended"]))
+        for row in plain.levels(record, found)
+    ]
+    title = f"{record.label(found.plan.run)}: {found.plan.quantity}, {found.plan.norm}"
+    return Table(title, ("cells", "error", "order", "failed"), tuple(rows), texts=("failed",))
+
+
+def runs(record: Record) -> Section:
+    """Every run: its parameters that vary, how it ended, what it took."""
+    names = record.study.axes
+    head = (*(name.replace("_", " ") for name in names), "status", "time steps", "particles", "wall time [s]", "failed")
+    rows = []
+    for run in record.study.runs:
+        result = record.result(run)
+        ends: tuple[str, ...] = ("not run", *[words.DASH] * 4)
+        if result:
+            why = failures.failure(result.failure) if result.failure else ""
+            ends = (result.status, str(result.steps), str(result.particles), f"{result.wall_s:.2f}", why)
+        rows.append((*(str(getattr(run, name)) for name in names), *ends))
+    return Section("runs", "Runs", tables=[Table("All runs", head, tuple(rows), heads=0, texts=("status", "failed"))])
+
+
+def errors(record: Record, quantity: str, norm: str) -> Figure:
+    """Error of every refinement against cell size, both axes logarithmic."""
+    methods = list(dict.fromkeys(getattr(s.first, "method", "") for s in record.series))
+    with rc_context(style.RC):
+        figure = Figure(figsize=style.PANEL, layout="constrained")
+        axes = figure.subplots()
+        for s in record.drawn:
+            points = [(1 / run.cells, error) for run, error in record.errors(s, quantity, norm) if error > 0]
+            look = style.look(methods, getattr(s.first, "method", ""), getattr(s.first, "ppc", 4))
+            axes.loglog(*zip(*points, strict=True), label=record.label(s.first), **look.plot) if points else None
+        _expected(axes, record, quantity, norm)
+        cell_axis(axes, record.drawn)
+        axes.set_ylabel(f"error of the {quantity}, {norm}")
+        axes.legend(frameon=False)
+    return figure
+
+
+def _expected(axes: object, record: Record, quantity: str, norm: str) -> None:
+    """A line of the expected order below the finest errors."""
+    for f in record.findings:
+        e, done = f.plan.expectation, record.errors(record.series_of(f.plan), quantity, norm)
+        if (f.plan.quantity, f.plan.norm) == (quantity, norm) and e and e.order is not None and len(done) > 1:
+            h = [1 / done[0][0].cells, 1 / done[-1][0].cells]
+            low = 0.5 * done[-1][1]
+            axes.plot(h, [low * (h[0] / h[1]) ** e.order, low], "--", color=style.INK, linewidth=0.9)  # type: ignore[attr-defined]
+            return

@@ -1,0 +1,32 @@
+"""The command of a case that has none of its own: an option for each field of its Run, and those of any study."""
+
+import ast
+from importlib import import_module
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from mpm_verify.solver.plugins import CASES, path
+from mpm_verify.verify.options import study_command, values
+
+Replicates = Annotated[int, typer.Option(help="Runs of each point, with the particles elsewhere in their cells.")]
+Quick = Annotated[bool, typer.Option("--quick", help="Few cells and particles: a verdict in seconds.")]
+
+
+def add(app: typer.Typer, case: str) -> None:
+    """Add the command `verify CASE`; its Run and axes stand in cases/CASE/run.py."""
+    module: Any = import_module(f"{CASES}.{case}.run")
+
+    def command(asked: dict[str, list[str]], replicates: int, quick: bool, out: Path | None, **more: Any) -> int:
+        from mpm_verify.verify.run import Settings, command, conduct, named, usage
+
+        with usage():
+            from mpm_verify.cases.harness.build import Asked, build
+
+            study = build(Asked(case, values(module.Run, asked), replicates, quick), command())
+        return conduct(study, Settings(named(study, out), **more))
+
+    command.__doc__ = (ast.get_docstring(ast.parse(path(CASES, case).read_text())) or "").partition("\n")[0]
+    own = {"replicates": (Replicates, 1), "quick": (Quick, False)}
+    study_command(app, case, module.Run, command, module.AXES, own, leave_out=("offset",))
