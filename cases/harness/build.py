@@ -57,7 +57,9 @@ def union(
         runs += more
         plans += declared
     once = tuple(dict.fromkeys(runs))
-    unique = tuple({(plan.head, plan.quantity, plan.norm): plan for plan in reversed(plans)}.values())[::-1]
+    unique: dict[Any, QuantityPlan[Any]] = {}
+    for plan in plans:
+        unique.setdefault((plan.head, plan.quantity, plan.norm), plan)
     least = len(once) if finish is None else finish
     if isinstance(least, bool) or not isinstance(least, int) or not 0 <= least <= len(once):
         raise ValueError(f"finish = {finish!r} must be a whole number from 0 to the {len(once)} runs there are")
@@ -66,7 +68,7 @@ def union(
         title or case.title(once),
         command,
         once,
-        unique,
+        tuple(unique.values()),
         axes(once),
         tuple(words),
         least,
