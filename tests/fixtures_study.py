@@ -70,7 +70,7 @@ def _no_sources(*_: object) -> str:
     return "synthetic"
 
 
-def _declared(methods: tuple[str, ...]) -> tuple[QuantityPlan, ...]:
+def _declared(methods: tuple[str, ...]) -> tuple[QuantityPlan[Run], ...]:
     found = []
     for method, ppc in U_RMS:
         for quantity in QUANTITIES if method in methods else ():
@@ -78,9 +78,17 @@ def _declared(methods: tuple[str, ...]) -> tuple[QuantityPlan, ...]:
                 judged = quantity == "u" and norm == "rms" and ppc in HALF_PPC
                 expected = {"cpdi": SECOND if ppc == 4 else Expectation(2.0, source=SECOND.source), "mpm": NONE}[method]
                 known = quantity == "u" and norm == "rms"
-                run = Run(method, "axis_aligned", "neo_hookean", CELLS[0], ppc, 0.4)
-                found.append(QuantityPlan(run, quantity, norm, judged, expected if known else None))
+                of = expected if known else None
+                found.append(plan(method, "axis_aligned", ppc, quantity, norm, judged, of))
     return tuple(found)
+
+
+def plan(
+    method: str, solution: str, ppc: int, quantity: str, norm: str, judged: bool, expectation: Expectation | None
+) -> QuantityPlan[Run]:
+    """What is declared of a quantity of a refinement from 8 cells, with the material of this module."""
+    run = Run(method, solution, "neo_hookean", CELLS[0], ppc, 0.4)
+    return QuantityPlan(run, quantity, norm, judged, expectation)
 
 
 def _result(run: Run) -> Result:
