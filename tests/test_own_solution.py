@@ -13,11 +13,10 @@ import pytest
 from mpm_verify.cases.harness.identity import identity
 from mpm_verify.cases.mms.case import execute
 from mpm_verify.cases.mms.run import Run
-from mpm_verify.solver.plugins import canonical
 from mpm_verify.mms.check import FINE, check, determinant, least_det
 from mpm_verify.mms.manufacture import manufacture
 from mpm_verify.mms.measure import Sampler
-from mpm_verify.solver.plugins import SOLUTIONS, absolute, create, split
+from mpm_verify.solver.plugins import SOLUTIONS, absolute, canonical, create, split
 from mpm_verify.verify.main import main
 
 EXAMPLE = "tests/own_solution.py"
@@ -172,7 +171,7 @@ def test_identity_is_what_is_returned(write: Write, tmp_path: Path, monkeypatch:
     copy = tmp_path / "copy.py"
     copy.write_text(Path(path).read_text())
     assert identity(SOLUTIONS, str(copy)) == first
-    write("sp.Matrix([0.05 * w * s, 0.03 * s * w])")
+    write("sp.Matrix([s * w * 0.05, s * 0.03 * w])")
     assert identity(SOLUTIONS, path) == first
     write("sp.Matrix([0.05 * w * s, 0.02 * s * w])")
     assert identity(SOLUTIONS, path) != first

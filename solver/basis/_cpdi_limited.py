@@ -3,7 +3,7 @@
 import numpy as np
 
 from mpm_verify.solver._jit import kernel
-from mpm_verify.solver.basis.cpdi import half_sides, parallelogram, passed
+from mpm_verify.solver.basis._parallelogram import half_sides, parallelogram, passed
 from mpm_verify.solver.weights import FILL
 
 
