@@ -103,9 +103,8 @@ def _runs(asked: Asked) -> tuple[tuple[Any, ...], list[QuantityPlan[Any]]]:
         raise ValueError(f"{count} runs are asked for, and {MOST} is the most; give fewer values, or several studies")
     points = [dict(zip(order, point, strict=True)) for point in product(*(values[key] for key in order))]
     runs = tuple(dict.fromkeys(make(case, point) for point in points))
-    for courant in times:
-        make(case, {**points[-1], "courant": courant})  # says what is wrong with it
-    case.check(runs)
+    smaller = [make(case, {**point, "courant": courant}) for courant in times for point in points]
+    case.check((*runs, *smaller))
     if not (case.quantities and refines(case.Run)):
         return tuple(dict.fromkeys(case.companions(runs))), []
     plans = [plan for one in {head(run): run for run in reversed(runs)}.values() for plan in declare(case, one)]
