@@ -9,7 +9,6 @@ from typing import Any
 
 from mpm_verify.cases.harness.build import Asked
 from mpm_verify.cases.judging.records import Expectation
-from mpm_verify.cases.mms.execute import execute
 from mpm_verify.cases.mms.expectations import JUDGED_QUANTITY, expected
 from mpm_verify.cases.mms.run import AXES, NORMS, QUANTITIES, QUICK, Result, Run
 from mpm_verify.cases.mms.time_step import check_time_steps
@@ -29,7 +28,7 @@ from mpm_verify.solver.plugins import (
 from mpm_verify.solver.plugins import canonical as canonical_name
 from mpm_verify.solver.stress_update import check_stress_update
 
-__all__ = ["AXES", "JUDGED", "NORMS", "QUANTITIES", "QUICK", "Result", "Run", "execute"]
+__all__ = ["AXES", "JUDGED", "NORMS", "QUANTITIES", "QUICK", "Result", "Run"]
 
 JUDGED = (JUDGED_QUANTITY,)
 SCHEME = {"transfer": "flip", "stress": "usl", "layout": "uniform"}  # of which expectations are registered
