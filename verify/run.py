@@ -52,6 +52,10 @@ def usage() -> Iterator[None]:
 
     try:
         yield
+    except SystemExit as error:
+        raise typer.TyperException(
+            f"a file of yours ended the program, with {error.code!r}; a study ends with its own exit code"
+        ) from error
     except RunnerError as error:
         raise Ended(str(error), DEFECT if error.defect else USAGE) from error
     except (ValueError, StoreError) as error:
@@ -79,14 +83,14 @@ def conduct(study: "Study[Any]", settings: Settings) -> int:
 
         check_count(settings.jobs, "--jobs")
         check_count(settings.threads, "--threads")
-        writable(settings.junit, "--junit")
-        writable(settings.summary, "--summary")
         store = Store(settings.folder, study.case)
         if settings.dry_run:
             return told_plan(study, store, settings)
+        affordable(study, store, settings)
+        writable(settings.junit, "--junit")
+        writable(settings.summary, "--summary")
         with store.locked():  # before study.json is written: whoever is refused leaves the other's study as it is
             store.create(study)
-            affordable(study, store, settings)
             results = compute(study, store, settings)
             record = Record(store, study, results, earlier=False)
             page = draw(record, settings)

@@ -25,7 +25,7 @@ from pydantic import TypeAdapter
 
 from mpm_verify.cases.harness.study import ResultRecord, RunRecord, Study
 from mpm_verify.cases.judging.records import Expectation
-from mpm_verify.solver.plugins import CASES, available
+from mpm_verify.solver.plugins import CASES, available, meant
 
 
 @dataclass(frozen=True)
@@ -115,7 +115,8 @@ class Case:
 def case_named(name: str) -> Case:
     """The case of that name. Raises ValueError that lists the cases for another."""
     if name not in available(CASES):
-        raise ValueError(f"no case {name!r}; choose from {', '.join(available(CASES))}")
+        near = meant(name, available(CASES))
+        raise ValueError(f"no case {name!r}{near}; choose from {', '.join(available(CASES))}")
     return Case(name, import_module(f"{CASES}.{name}.case"))
 
 

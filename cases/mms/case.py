@@ -23,7 +23,6 @@ from mpm_verify.solver.plugins import (
     create,
     is_file,
     label,
-    load,
 )
 from mpm_verify.solver.plugins import canonical as canonical_name
 from mpm_verify.solver.stress_update import check_stress_update
@@ -48,7 +47,7 @@ def canonical(values: dict[str, Any]) -> dict[str, Any]:
     values["material"] = canonical_name(MATERIALS, values.get("material") or create(SOLUTIONS, solution).material)
     values["transfer"] = canonical_name(TRANSFERS, values.get("transfer", Run.transfer))
     values["layout"] = canonical_name(LAYOUTS, values.get("layout", Run.layout))
-    load(METHODS, values.get("method", Run.method).partition(":")[0])
+    values["method"] = canonical_name(METHODS, values.get("method", Run.method))
     check_stress_update(values.get("stress", Run.stress))
     return values
 
