@@ -32,7 +32,9 @@ Summary = Annotated[
 ]
 Page = Annotated[
     bool | None,
-    typer.Option("--page/--no-page", help="Draw the page.", show_default="page, unless --json or --junit ask for less"),
+    typer.Option(
+        "--page/--no-page", help="Draw the page.", show_default="page, unless --json, --junit or --quick ask for less"
+    ),
 ]
 Vtk = Annotated[bool, typer.Option("--vtk", help="Write snapshots for ParaView.")]
 DryRun = Annotated[bool, typer.Option("--dry-run", help="Print the runs and what they take, and run nothing.")]

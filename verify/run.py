@@ -16,6 +16,7 @@ import typer
 from mpm_verify.verify.exits import DEFECT, USAGE
 
 if TYPE_CHECKING:
+    from mpm_verify.cases.harness.build import Asked
     from mpm_verify.cases.harness.study import Study
     from mpm_verify.reports.frames import Record
 
@@ -37,7 +38,8 @@ class Settings:
     json_output: bool = False
     junit: Path | None = None
     summary: Path | None = None
-    page: bool | None = None  # None: unless JSON or JUnit are asked for alone
+    page: bool | None = None  # None: unless JSON or JUnit are asked for alone, or the study is a quick one
+    quick: bool = False
     vtk: bool = False
     dry_run: bool = False
     yes: bool = False
@@ -103,7 +105,7 @@ def draw(record: "Record", settings: Settings) -> Path | None:
     """The page of the study; None where none is asked for."""
     wanted = settings.page
     if wanted is None:
-        wanted = settings.vtk or not (settings.json_output or settings.junit)
+        wanted = settings.vtk or not (settings.json_output or settings.junit or settings.quick)
     return page_of(record, settings.vtk) if wanted else None
 
 
@@ -261,6 +263,15 @@ def command() -> str:
             kept.append(argument)
             skip = False
     return "verify " + shlex.join(kept)
+
+
+def study_of(asked: "Asked", out: Path | None) -> "tuple[Study[Any], Path]":
+    """The study that is asked for, and its folder."""
+    from mpm_verify.cases.harness.build import named
+    from mpm_verify.cases.harness.reuse import study
+
+    folder = out or Path("results") / named(asked)
+    return study(asked, command(), folder), folder
 
 
 def named(study: "Study[Any]", out: Path | None) -> Path:

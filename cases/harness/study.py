@@ -135,7 +135,7 @@ class Study(Generic[R]):
     """The runs of a case and what is declared of them before they run. `command` repeats it.
 
     `axes` are the fields that it varies, `words` what it is for, `finish` how many runs must come to their end, of a
-    case that counts them.
+    case that counts them. `made` names what it was built from, see cases/harness/reuse.py.
     """
 
     name: str
@@ -147,6 +147,7 @@ class Study(Generic[R]):
     words: tuple[str, ...] = ()
     finish: int = 0
     case: str = ""
+    made: str = ""
     format: int = FORMAT
 
 
