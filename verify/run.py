@@ -56,7 +56,8 @@ def usage() -> Iterator[None]:
         yield
     except SystemExit as error:
         raise typer.TyperException(
-            f"a file of yours ended the program, with {error.code!r}; a study ends with its own exit code"
+            f"a file of yours ended the program, with {error.code!r}; a study ends with its own exit code; stored runs "
+            "are kept"
         ) from error
     except RunnerError as error:
         raise Ended(str(error), DEFECT if error.defect else USAGE) from error
