@@ -88,7 +88,9 @@ def test_parameters_and_paths(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
     assert label("cpdi:limit=1") == "cpdi:limit=1"
     with pytest.raises(ValueError, match=r"^own.py has no parameter 'B'; it has L, C, A, n, axis, phase$"):
         create(SOLUTIONS, "own.py:B=1")
-    with pytest.raises(ValueError, match=r"^no case 'own.py'; choose from column, element, mms, objectivity, wave_bar$"):
+    with pytest.raises(
+        ValueError, match=r"^no case 'own.py'; choose from column, element, mms, objectivity, wave_bar$"
+    ):
         load(CASES, "own.py")
 
 
