@@ -157,6 +157,9 @@ def complain(message: str, code: int = USAGE) -> int:
 
         near = meant(message.split("'")[1], files())
         message = f"{message.removesuffix('.')}{near}; choose from {', '.join(files())}"
+    before, possible, names = message.partition("(Possible options: ")
+    if possible:
+        message = f"{before}(did you mean {names.removesuffix(')')}?)"
     if sys.stderr is None:  # print() would take standard output instead
         return code
     with contextlib.suppress(OSError, ValueError, AttributeError):
