@@ -12,7 +12,7 @@ from fixtures_command import Call, caller, one_line
 from mpm_verify.cases.harness.build import Asked, build
 from mpm_verify.cases.harness.contract import case_named
 from mpm_verify.cases.harness.study_file import study_of
-from mpm_verify.cases.mms import case as mms
+from mpm_verify.cases.mms import execute as mms
 from mpm_verify.reports.frames import read
 from mpm_verify.solver.plugins import CASES, MATERIALS, METHODS, SOLUTIONS, available
 from mpm_verify.verify.choices import completion

@@ -260,7 +260,7 @@ def test_dry_run(verify: Call, idle: None, tmp_path: Path, name: str) -> None:
     *runs, last = out.splitlines()
     assert all(line.startswith("to do   ") for line in runs)
     assert len({line.split()[2] for line in runs}) == len(runs) > 0
-    assert f": {len(runs)} runs to be done, 0 stored, up to " in last
+    assert f": {len(runs)} run{'s' * (len(runs) > 1)} to be done, 0 stored, up to " in last
     assert content(tmp_path) == []
 
 

@@ -18,7 +18,7 @@ from mpm_verify.cases.harness.contract import case_named
 from mpm_verify.cases.harness.shipped import shipped
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.cases.harness.study_file import read
-from mpm_verify.cases.mms import case as mms
+from mpm_verify.cases.mms import execute as mms
 from mpm_verify.reports.export.column_files import tables
 from mpm_verify.reports.export.document import schema
 from mpm_verify.reports.frames import joined
