@@ -241,8 +241,9 @@ def test_report_of_a_broken_result(verify: Verify, stored: Path, text: str, said
     assert content(stored) == before
 
 
-def test_report_with_missing_arrays(verify: Verify, stored: Path) -> None:
+def test_report_with_missing_arrays(verify: Verify, tmp_path: Path) -> None:
     """They cost figures alone: verdicts and tables stand in the Results."""
+    stored = fixtures.make(tmp_path / "stored", ("cpdi",), largest=16)
     with fixtures.sources():
         assert verify("report", str(stored)).code == 0
     whole = {file.name for file in (stored / "figures").iterdir()}
