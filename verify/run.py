@@ -5,7 +5,7 @@ import shlex
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
@@ -33,6 +33,7 @@ class Settings:
     """Where and how a study is run and told. `show` prints it; the usual is that of the case."""
 
     folder: Path
+    _: KW_ONLY
     jobs: int | None = None
     threads: int = 1
     json_output: bool = False
@@ -199,9 +200,9 @@ class Estimate:
 
     def __str__(self) -> str:
         """One line."""
-        told = f"{self.runs} run{'s' * (self.runs != 1)} to be done, {self.stored} stored"
-        needed = f"{self.memory / 2**30:.1f} GB of memory and {duration(self.seconds)}"
-        return f"{told}, up to {self.particles:,} particles, about {needed}"
+        runs = f"{self.runs} run{'s' * (self.runs != 1)}"
+        told = f"{runs} to be done, {self.stored} stored, up to {self.particles:,} particles"
+        return f"{told}, about {self.memory / 2**30:.1f} GB of memory and {duration(self.seconds)}"
 
 
 def estimate(study: "Study[Any]", store: Any, settings: Settings) -> Estimate:
