@@ -188,8 +188,9 @@ class Estimate:
 
     def __str__(self) -> str:
         """One line."""
-        told = f"{self.runs} run{'s' * (self.runs != 1)} to be done, {self.stored} stored, up to {self.particles:,} particles"
-        return f"{told}, about {self.memory / 2**30:.1f} GB of memory and {duration(self.seconds)}"
+        runs = f"{self.runs} run{'s' * (self.runs != 1)} to be done, {self.stored} stored"
+        size = f"up to {self.particles:,} particles, about {self.memory / 2**30:.1f} GB of memory"
+        return f"{runs}, {size} and {duration(self.seconds)}"
 
 
 def estimate(study: "Study[Any]", store: Any, settings: Settings) -> Estimate:
