@@ -218,11 +218,11 @@ def test_what_is_wrong_with_the_input_is_one_line(tmp_path: Path) -> None:
 def test_the_page_names_what_missed_first(tmp_path: Path) -> None:
     run(tmp_path, GOOD, BAD, LOST)
     page = (tmp_path / "out" / "report.html").read_text()
-    assert page.index("What missed") < page.index("The turn")
+    assert page.index("Checks that did not pass") < page.index("The turn")
     assert "Errors are against: a sieve &lt;&amp;&gt;." in page
     assert "500000 (paper)" in page
     run(tmp_path, GOOD)
-    assert "What missed" not in (tmp_path / "out" / "report.html").read_text()
+    assert "Checks that did not pass" not in (tmp_path / "out" / "report.html").read_text()
 
 
 def test_words_of_a_check() -> None:

@@ -244,8 +244,8 @@ def test_measures_of_known_shapes() -> None:
 @pytest.mark.parametrize(
     ("change", "says"),
     [
-        ({"ppc": 3}, "no square number"),
-        ({"cells": 1}, "must be 2 or more"),
+        ({"ppc": 3}, "not a square number"),
+        ({"cells": 1}, "choose whole numbers from 2 to"),
         ({"cells": 2000}, "at most 1000"),
         ({"channel": 7.3}, "must make whole cells"),
         ({"g": 1e300}, "must be at most"),
@@ -254,10 +254,10 @@ def test_measures_of_known_shapes() -> None:
         ({"aspect": 0.3}, "must make whole cells"),
         ({"start": "wet"}, "must be one of none, k0, oedometric"),
         ({"left": "rubber"}, "must be one of roller, fixed"),
-        ({"law": "neo_hookean"}, "must have a law in rate form"),
+        ({"law": "neo_hookean"}, "must have a material in rate form"),
         ({"smoothing": "rough"}, "no smoothing"),
         ({"limit": 0.0}, "must be above zero"),
-        ({"law": "hypoelastic", "start": "k0"}, "must have a law with an angle of friction"),
+        ({"law": "hypoelastic", "start": "k0"}, "must have a material with an angle of friction"),
         ({"damping": 1.5}, "must lie from 0"),
         ({"deformation": "cubic"}, "choose from linear, exponential"),
         ({"channel": 1.0}, "must be from 2 to 100"),

@@ -164,10 +164,10 @@ def test_a_failed_run_is_a_result(verify: Any, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "says"),
     [
-        (["column", "--cells", "1"], "cells = 1 of the width must be 2 or more"),
-        (["column", "--ppc", "3"], "3 particles per cell is no square number"),
+        (["column", "--cells", "1"], "cells = 1 cannot be run; choose whole numbers from 2"),
+        (["column", "--ppc", "3"], "3 particles per cell is not a square number"),
         (["column", "--law", "clay"], "no material 'clay'; choose from"),
-        (["column", "--law", "neo_hookean"], "must have a law in rate form"),
+        (["column", "--law", "neo_hookean"], "must have a material in rate form"),
         (["column", "--start", "wet"], "start = 'wet'"),
         (["column", "--offset", "0.1"], "--offset '0.1' must be two numbers"),
         (["column", "--offset", "0.1,0.9"], "must lie between -0.5 and 0.5"),

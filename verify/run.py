@@ -1,4 +1,4 @@
-"""The one way from a study to an exit code: run what is not stored, judge, draw, export, print."""
+"""Way from a study to an exit code, the only one: run what is not stored, judge, draw, export, print."""
 
 import os
 import shlex
@@ -31,7 +31,7 @@ NOT_REPEATED = ("--out", "--junit", "--json", "--jobs", "--threads", "--summary"
 
 @dataclass(frozen=True)
 class Settings:
-    """Where and how a study is run and told. `show` prints it; the usual is that of the case."""
+    """Settings of where and how a study is run and told. `show` prints it; the usual is that of the case."""
 
     folder: Path
     jobs: int | None = None
@@ -48,7 +48,7 @@ class Settings:
 
 @contextmanager
 def usage() -> Iterator[None]:
-    """What is wrong with the input or the store becomes one line and exit code 2."""
+    """Turn what is wrong with the input or the store into one line and exit code 2."""
     from mpm_verify.cases.harness.runner import RunnerError
     from mpm_verify.cases.harness.store import StoreError
 
@@ -65,7 +65,7 @@ def usage() -> Iterator[None]:
 
 
 class Ended(typer.TyperException):
-    """One line on standard error, with an exit code of its own."""
+    """Error of one line on standard error, with an exit code of its own."""
 
     def __init__(self, message: str, code: int) -> None:
         super().__init__(message)
@@ -86,7 +86,7 @@ def conduct(study: "Study[Any]", settings: Settings) -> int:
         store = Store(settings.folder, study.case)
         if settings.dry_run:
             return told_plan(study, store, settings)
-        with store.locked():  # before study.json is written: whoever is refused leaves the other's study as it is
+        with store.locked():  # before study.json is written: whoever has to wait leaves the other's study as it is
             store.create(study)
             affordable(study, store, settings)
             results = compute(study, store, settings)
@@ -98,7 +98,7 @@ def conduct(study: "Study[Any]", settings: Settings) -> int:
 
 
 def draw(record: "Record", settings: Settings) -> Path | None:
-    """The page of the study; None where none is asked for."""
+    """Draw the page of the study; None where none is asked for."""
     wanted = settings.page
     if wanted is None:
         wanted = not (settings.json_output or settings.junit)
@@ -138,7 +138,7 @@ def export(record: "Record", settings: Settings, page: Path | None) -> None:
 
 
 def more_of(record: "Record") -> dict[str, Any]:
-    """What the JSON document of a case has beside that of any: `more` of reports/export/<case>.py, if it is there."""
+    """Additions of a case to its JSON document: `more` of reports/export/<case>.py, if it is there."""
     name = f"mpm_verify.reports.export.{record.study.case}"
     found: dict[str, Any] = import_module(name).more(record) if find_spec(name) else {}
     return found
@@ -159,7 +159,7 @@ def shown(record: "Record", page: Path | None) -> None:
 
 
 def compute(study: "Study[Any]", store: Any, settings: Settings) -> dict[str, Any]:
-    """The Results of the study; in this process if there is little to do or one job is asked for."""
+    """Run the study, and give its Results; in this process if there is little to do or one job is asked for."""
     from mpm_verify.cases.harness.runner import InProcess, Ticker, cost, pending, process_pool, run_study
     from mpm_verify.verify.terminal.progress import progress
 
@@ -174,13 +174,13 @@ def compute(study: "Study[Any]", store: Any, settings: Settings) -> dict[str, An
 
 
 def jobs_of(settings: Settings) -> int:
-    """Runs at a time."""
+    """Number of runs at a time."""
     return settings.jobs or max(1, (os.cpu_count() or 1) // settings.threads)
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """What a study takes: runs to be done and stored, the largest run, memory in bytes, time in seconds."""
+    """Estimate of what a study takes: runs to be done and stored, the largest run, memory in bytes, time in seconds."""
 
     runs: int
     stored: int
@@ -189,13 +189,13 @@ class Estimate:
     seconds: float
 
     def __str__(self) -> str:
-        """One line."""
+        """Estimate in one line."""
         told = f"{self.runs} runs to be done, {self.stored} stored, up to {self.particles:,} particles"
         return f"{told}, about {self.memory / 2**30:.1f} GB of memory and {duration(self.seconds)}"
 
 
 def estimate(study: "Study[Any]", store: Any, settings: Settings) -> Estimate:
-    """What is known before anything runs; times are those of a slow processor."""
+    """Estimate what a study takes before anything runs; times are those of a slow processor."""
     from mpm_verify.cases.harness.runner import pending
 
     waiting = pending(study, store)
@@ -209,7 +209,7 @@ def estimate(study: "Study[Any]", store: Any, settings: Settings) -> Estimate:
 
 
 def affordable(study: "Study[Any]", store: Any, settings: Settings) -> None:
-    """Raises ValueError for a study that cannot be, or that takes hours and has no --yes."""
+    """Raise ValueError for a study that cannot be run, or that takes hours and has no --yes."""
     needed = estimate(study, store, settings)
     there = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     if needed.memory > there:
@@ -233,7 +233,7 @@ def told_plan(study: "Study[Any]", store: Any, settings: Settings) -> int:
 
 
 def duration(seconds: float) -> str:
-    """A time in the unit that people use."""
+    """Duration in the unit that people use."""
     for unit, size in (("days", 86400.0), ("hours", 3600.0), ("minutes", 60.0)):
         if seconds >= 2 * size:
             return f"{seconds / size:.0f} {unit}"
@@ -241,13 +241,13 @@ def duration(seconds: float) -> str:
 
 
 def check_count(count: int | None, option: str) -> None:
-    """Raises ValueError unless it is left out or 1 and more."""
+    """Raise ValueError unless the count is left out or 1 and more."""
     if count is not None and count < 1:
         raise ValueError(f"{option} takes whole numbers from 1 on")
 
 
 def command() -> str:
-    """The command that repeats this one, without what says only where the result goes."""
+    """Command that repeats this one, without what says only where the result goes."""
     kept, skip = [], False
     for argument in sys.argv[1:]:
         name, _, value = argument.partition("=")

@@ -35,17 +35,17 @@ class ElementAnalysis:
 
     @property
     def checks(self) -> tuple[Check, ...]:
-        """Those of all, named by what tells them apart where there are several."""
+        """Checks of all materials, named by what tells them apart where there are several."""
         return tuple(check for one in self.examinations.values() for check in one.checks)
 
 
 def title(runs: Sequence[ElementRun]) -> str:
-    """`Element tests of mohr_coulomb`."""
+    """Title, such as `Element tests of mohr_coulomb`."""
     return f"Element tests of {', '.join(dict.fromkeys(label(run.material) for run in runs))}"
 
 
 def canonical(values: dict[str, Any]) -> dict[str, Any]:
-    """The material without parameters at their defaults; of a path the whole path of its file."""
+    """Values with the material without parameters at their defaults; of a path the whole path of its file."""
     values["material"] = canonical_name(MATERIALS, values.get("material", ElementRun.material))
     if values.get("path"):
         values["path"] = str(Path(values["path"]).resolve())
@@ -53,12 +53,14 @@ def canonical(values: dict[str, Any]) -> dict[str, Any]:
 
 
 def check(runs: Sequence[ElementRun]) -> None:
-    """Raises ValueError with one line for a file that cannot be read, or a stress that the material cannot have."""
+    """Raise ValueError with one line for a file that cannot be read, or a stress that the material cannot have."""
     for run in runs:
         if run.path:
             test_of(run)
         if run.stress != CONFINED and create(MATERIALS, run.material).energy is not None:
-            raise ValueError("stress: a material with a stress from F starts undeformed; give it to one in rate form")
+            raise ValueError(
+                f"stress = {run.stress:g}: a material with a stress from F starts undeformed; leave stress out"
+            )
 
 
 def examine(study: Study[ElementRun], results: Mapping[str, ElementResult], store: Store) -> ElementAnalysis:
@@ -76,7 +78,7 @@ def examine(study: Study[ElementRun], results: Mapping[str, ElementResult], stor
 
 
 def _one(study: Study[ElementRun], results: Sequence[ElementResult], store: Store, before: str) -> Examination:
-    """The Examination of results that share their material."""
+    """Examination of results that have their material in common."""
     run = results[0].run
     tests = [one for result in results if result.run.test != PROPERTIES and (one := read(result, store))]
     known = tuple(check for result in results for check in result.checks)
@@ -85,7 +87,7 @@ def _one(study: Study[ElementRun], results: Sequence[ElementResult], store: Stor
 
 
 def read(result: ElementResult, store: Store) -> ElementStudy | None:
-    """A stored test; None where its curves cannot be read."""
+    """Stored test; None where its curves cannot be read."""
     try:
         arrays = store.arrays(result.digest)
     except StoreError:

@@ -1,4 +1,4 @@
-"""The contract of a case, and the way to it by its name: `cases/<name>/case.py` is found, no list holds it.
+"""Contract of a case, and the way to it by its name: `cases/<name>/case.py` is found, no list holds it.
 
 A case is a module with
     Run, Result      records of cases/harness/study.py; each field of Run can be an axis of a study
@@ -29,7 +29,15 @@ from mpm_verify.solver.plugins import CASES, available
 
 @dataclass(frozen=True)
 class Case:
-    """A case by its module; what the module does not say has a default here."""
+    """Case by its module; what the module does not say has a default here.
+
+    Parameters
+    ----------
+    name
+        Name of its folder below `cases/`.
+    module
+        The module `cases/<name>/case.py`.
+    """
 
     name: str
     module: ModuleType
@@ -56,7 +64,7 @@ class Case:
 
     @property
     def quantities(self) -> tuple[str, ...]:
-        """Quantities whose errors refine, none of a case that is no refinement study."""
+        """Quantities whose errors are refined; none of a case without refinements."""
         return getattr(self.module, "QUANTITIES", ())
 
     @property
@@ -71,48 +79,64 @@ class Case:
 
     @property
     def expectation(self) -> Callable[[RunRecord, str, str], Expectation | None]:
-        """What is registered of a quantity and norm of the refinement that a run belongs to."""
+        """Function (run, quantity, norm) -> registered expectation of the refinement of the run, or None."""
         return getattr(self.module, "expectation", lambda run, quantity, norm: None)
 
     @property
     def multiple(self) -> Callable[[RunRecord], int]:
-        """Number whose multiples are the cells that fit the body of a run."""
+        """Function (run) -> number whose multiples are the cells that fit the body of the run."""
         return getattr(self.module, "multiple", lambda run: 1)
 
     @property
     def parts(self) -> Callable[[Any], Sequence[Any]]:
-        """What is asked for (build.Asked) in parts, where what nobody asked for depends on what was."""
+        """Function (Asked) -> parts of it, where usual values of one axis depend on another axis."""
         return getattr(self.module, "parts", lambda asked: [asked])
 
     @property
     def companions(self) -> Callable[[Sequence[RunRecord]], Sequence[RunRecord]]:
-        """The runs with those that each of them is held against."""
+        """Function (runs) -> the runs with those that each of them is held against."""
         return getattr(self.module, "companions", lambda runs: runs)
 
     @property
     def canonical(self) -> Callable[[dict[str, Any]], dict[str, Any]]:
-        """One name for one thing: specifications without parameters that are at their defaults."""
+        """Function (values) -> values with one name for one thing: no parameters that are at their defaults."""
         return getattr(self.module, "canonical", lambda values: values)
 
     @property
     def check(self) -> Callable[[Sequence[RunRecord]], None]:
-        """Raises ValueError for runs that cannot be."""
+        """Function (runs) that raises ValueError, with what to type instead, for runs that cannot be."""
         return getattr(self.module, "check", lambda runs: None)
 
     @property
     def examine(self) -> Callable[..., Any] | None:
-        """Checks of what is stored, where the case has some."""
+        """Function (study, results, store) -> checks of what is stored; None of a case without checks."""
         return getattr(self.module, "examine", None)
 
     @property
     def execute(self) -> Callable[..., Any]:
-        """A run to its end."""
+        """Function (run, tick) -> (Result, arrays): a run to its end, or to where it fails."""
         return self.module.execute  # type: ignore[no-any-return]
 
 
 @cache
 def case_named(name: str) -> Case:
-    """The case of that name. Raises ValueError that lists the cases for another."""
+    """Find a case by its name.
+
+    Parameters
+    ----------
+    name
+        Name of a folder below `cases/` that has a `case.py`.
+
+    Returns
+    -------
+    Case
+        The same object for the same name.
+
+    Raises
+    ------
+    ValueError
+        One line that lists the cases there are.
+    """
     if name not in available(CASES):
         raise ValueError(f"no case {name!r}; choose from {', '.join(available(CASES))}")
     return Case(name, import_module(f"{CASES}.{name}.case"))

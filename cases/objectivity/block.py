@@ -1,4 +1,4 @@
-"""The turning block held against its closed form, its inertial fraction, and every negative control on the same run."""
+"""Turning block held against its closed form, its inertial fraction, and every negative control on the same run."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -19,13 +19,13 @@ Found = Mapping[str, tuple[Curves, Failure | None]]
 
 
 def blocks(block: Block) -> dict[str, Block]:
-    """The runs: as printed, a hundredth of it, the inertial forces alone, and each negative control."""
+    """Runs by name: as printed, a hundredth of it, the inertial forces alone, and each negative control."""
     named = {PRINTED: block, SMALL: replace(block, L=block.L / 100), REST: replace(block, frame=True)}
     return named | {name: replace(block, rate=name) for name in available(NEGATIVE_CONTROLS)}
 
 
 def turning(curve: Mapping[str, Floats]) -> NDArray[np.bool_]:
-    """Which samples are of the turn."""
+    """Mask of the samples of the turn."""
     late: NDArray[np.bool_] = curve["t"] > 1.0 + 1e-9
     return late
 
@@ -41,7 +41,7 @@ def misses(curve: Mapping[str, Floats], block: Block) -> Floats:
 
 
 def checks(block: Block, found: Found) -> list[Check]:
-    """What the runs are held against; stresses in units of the mean vertical stress at the end of the ramp."""
+    """Checks of the runs; stresses in units of the mean vertical stress at the end of the ramp."""
     ended = {name: found[name][1] for name in (PRINTED, SMALL, REST) if found[name][1]}
     if ended:
         return [Check(GROUP, name, np.nan, 0.0, "absolute", "", failure=why) for name, why in ended.items()]
@@ -51,7 +51,7 @@ def checks(block: Block, found: Found) -> list[Check]:
     end = int(np.argmin(np.abs(small["t"] - 1.0)))
     peak = (1 - K0) / 2
     ramp = large["t"] <= 1.0
-    wave = ramped_column(large["t"][ramp], block.law.wave_speed(), block.L)
+    wave = ramped_column(large["t"][ramp], block.material.wave_speed(), block.L)
     ripple = float(np.sqrt(((large["yy"][ramp] - wave) ** 2).mean()))
     static, closed = "static equilibrium", "closed form, stress turned with the block"
     away = np.array([large["own_yy"][turning(large)].mean() + 1, rest["own_yy"][turning(rest)].mean() + 1])

@@ -1,4 +1,4 @@
-"""`verify objectivity`: everything about frame indifference that needs no soil, as one Examination."""
+"""Examination of frame indifference: the CPDI runs of the block, rates and negative controls."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -22,7 +22,7 @@ def examination(
     arrays: Mapping[str, Curves],
     before: str = "",
 ) -> Examination:
-    """All parts of one block by their names; `before` goes in front of the names of the groups of checks."""
+    """Examination of all parts of one block, by their names; `before` is put before the names of groups."""
     found = {name: (arrays[name], results[name].failure) for name in arrays if name != KINEMATIC}
     kept = curves(block, found, arrays[KINEMATIC])
     known: tuple[Check, ...] = results[KINEMATIC].checks  # type: ignore[attr-defined]
@@ -42,11 +42,11 @@ def examination(
 
 
 def curves(block: Block, found: full.Found, prescribed: Curves) -> Curves:
-    """What the page draws."""
+    """Curves that the page draws."""
     kept: Curves = {"exact": kinematic.exact_figure2(block, np.linspace(0, 2, 401))}
     kept |= {f"run/{name}": run["mean"] for name, (run, _) in found.items() if run["mean"]["t"].size}
     t = np.linspace(0, 1, 201)
-    kept["wave"] = {"t": t, "yy": ramped_column(t, block.law.wave_speed(), block.L)}
+    kept["wave"] = {"t": t, "yy": ramped_column(t, block.material.wave_speed(), block.L)}
     kept |= {f"field/{name}": run["field"] for name, (run, _) in found.items()}
     kept |= prescribed
     for name in available(NEGATIVE_CONTROLS):
@@ -77,7 +77,7 @@ def parameters(block: Block) -> dict[str, float | str]:
         "time step [s]": 1 / block.steps,
         "Courant number": block.courant,
         "unit of stress [Pa]": abs(block.sigma_v),
-        "inertial fraction w^2 L / g": block.share,
+        "inertial fraction w^2 L / g": block.inertial_fraction,
     }
 
 

@@ -1,4 +1,4 @@
-"""What is to be known of frame indifference, as codes with the numbers of the runs; the words are in reports/sentences.
+"""Findings on frame indifference, as codes with the numbers of the runs; the words are in reports/sentences.
 
 Numbers of stresses are fractions of the mean vertical stress at the end of the ramp.
 """
@@ -24,7 +24,7 @@ Curve = Mapping[str, Floats]
 
 
 class ObjectivityRemark(StrEnum):
-    """What came out, what one should know of each part, and where parameters come from."""
+    """Remarks on what came out, on each part, and on where parameters come from."""
 
     TURNS = "objectivity.turns"  # all checks pass: the stress turns with the block
     MISSED = "objectivity.missed"
@@ -48,7 +48,7 @@ class ObjectivityRemark(StrEnum):
 
 
 def findings(block: Block, checks: list[Check], curves: Curves, errors: Mapping[str, Floats]) -> list[Remark]:
-    """What came out; notes on the CPDI runs only where all three came to their end."""
+    """Remarks; notes on the CPDI runs only where all three came to their end."""
     unseen = [name for name, curve in of_controls(curves).items() if curve["kinematic"][0] < UNSEEN]
     found = [lead(block, checks, curves, unseen)]
     names = [f"run/{name}" for name in (full.PRINTED, full.SMALL, full.REST)]
@@ -63,7 +63,7 @@ def of_controls(curves: Curves) -> Curves:
 
 
 def lead(block: Block, checks: list[Check], curves: Curves, unseen: list[str]) -> Remark:
-    """How many checks missed; where none did, the largest shear stress and which controls Figure 2 does not see."""
+    """Remark on how many checks missed; where none did, the largest shear stress, and what Figure 2 misses."""
     missed = sum(check.outcome != "PASS" for check in checks)
     if missed:
         return Remark(ObjectivityRemark.MISSED, {"missed": missed, "checks": len(checks)})
@@ -78,7 +78,7 @@ def largest_shear(block: Block) -> float:
 
 
 def of_runs(block: Block, printed: Curve, small: Curve, rest: Curve) -> list[Remark]:
-    """Numbers of the block as printed, of the small one, and of the one that is not turned."""
+    """Remarks on the block as printed, of the small one, and of the one that is not turned."""
     late = {name: curve["t"] > RAMP for name, curve in (("printed", printed), ("small", small), ("rest", rest))}
     quarter = max(1, int(late["printed"].sum()) // 4)
     own = abs(printed["own_xy"][late["printed"]])
@@ -87,19 +87,24 @@ def of_runs(block: Block, printed: Curve, small: Curve, rest: Curve) -> list[Rem
         name: float(curve["own_yy"][late[name]].mean()) + 1
         for name, curve in (("printed", printed), ("rest", rest), ("small", small))
     }
-    inertia = {"L": block.L, "fraction": block.share, "small_fraction": block.share / 100, **away}
+    inertia = {
+        "L": block.L,
+        "fraction": block.inertial_fraction,
+        "small_fraction": block.inertial_fraction / 100,
+        **away,
+    }
     return [
         Remark(ObjectivityRemark.SWAP, {"exact": largest_shear(block), "peak": float(small["xy"].max())}, full.GROUP),
         Remark(ObjectivityRemark.CO_ROTATED,
                {"early": float(own[:quarter].max()), "end": float(own[-quarter:].max())}, full.GROUP),
         Remark(ObjectivityRemark.INERTIA, inertia, INERTIA),
-        Remark(ObjectivityRemark.RIPPLE, {"L": block.L, "period": 4 * block.L / block.law.wave_speed()}, INERTIA),
+        Remark(ObjectivityRemark.RIPPLE, {"L": block.L, "period": 4 * block.L / block.material.wave_speed()}, INERTIA),
         Remark(ObjectivityRemark.PARTICLES, {"largest": local}, INERTIA),
     ]  # fmt: skip
 
 
 def of_controls_and_rates(curves: Curves, errors: Mapping[str, Floats], unseen: list[str]) -> list[Remark]:
-    """Which controls Figure 2 cannot see, orders of rates and controls, how near rates are in simple shear."""
+    """Remarks on controls that Figure 2 cannot see, on orders, and on how near rates are in simple shear."""
     orders = {name: slope(error) for name, error in errors.items()}
     right = [orders[name] for name in available(RATES)]
     printed = float(of_controls(curves)["printed"]["kinematic"][0])

@@ -1,4 +1,4 @@
-"""The page of `verify objectivity`: Figure 2, what it can and cannot show, orders, and rates in simple shear."""
+"""Page of `verify objectivity`: Figure 2, what it can and cannot show, orders, and rates in simple shear."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -27,14 +27,14 @@ def page(record: Record, vtk: bool = False) -> Path:
 
 
 def sections(examination: Examination, add: Add) -> Sequence[Section]:
-    """Its parts; those of the CPDI runs only where all three have something to draw."""
+    """Sections; those of the CPDI runs only where all three have something to draw."""
     whole = all(f"run/{name}" in examination.curves for name in (PRINTED, SMALL, REST))
     runs = [figure2(examination, add), inertia(examination, add)] if whole else []
-    return [*runs, misread(examination, add), orders(examination, add), rates(examination, add)]
+    return [*runs, controls(examination, add), orders(examination, add), rates(examination, add)]
 
 
 def of(curves: Curves, start: str) -> Curves:
-    """The curves whose names begin with `start/`, without it."""
+    """Curves whose names begin with `start/`, without it."""
     return {name[len(start) + 1 :]: curve for name, curve in curves.items() if name.startswith(start + "/")}
 
 
@@ -43,7 +43,7 @@ def _checks(examination: Examination, group: str) -> Table:
 
 
 def figure2(examination: Examination, add: Add) -> Section:
-    """The stresses of the turned block."""
+    """Section of the stresses of the turned block."""
     curves, runs = examination.curves, of(examination.curves, "run")
     exact = curves["exact"]
     images = [
@@ -59,7 +59,7 @@ def figure2(examination: Examination, add: Add) -> Section:
 
 
 def inertia(examination: Examination, add: Add) -> Section:
-    """What is inertia and what is not."""
+    """Section on what is inertia and what is not."""
     runs = of(examination.curves, "run")
     shear = draw.co_rotated({name: runs[name] for name in (PRINTED, SMALL)})
     away = draw.inertia({name: runs[name] for name in (PRINTED, REST, SMALL)})
@@ -69,22 +69,22 @@ def inertia(examination: Examination, add: Add) -> Section:
           "Shear stress in the frame of the box: the mean over the block, and the largest of any particle."),
          (add("inertia", away, "Co-rotated vertical stress less its static value over time, three runs."),
           "What the block's mean vertical stress has beyond its static value. The run that is not turned feels the "
-          "inertial forces of the turning one, in a box at rest.")],
+          "inertial forces of the turning box, in a box at rest.")],
     )  # fmt: skip
 
 
-def misread(examination: Examination, add: Add) -> Section:
-    """The negative controls on the same figure."""
+def controls(examination: Examination, add: Add) -> Section:
+    """Section of the negative controls on the same figure."""
     curves = examination.curves
-    drawn = draw.misread(curves["exact"], of(curves, "figure2"))
+    drawn = draw.controls(curves["exact"], of(curves, "figure2"))
     rows = tuple(
         (name.replace("_", " "), *(sci(float(curve[key][0])) for key in ("kinematic", "run", "stretched")))
         for name, curve in of(curves, "control").items()
     )
     head = ("negative control", "Figure 2, kinematic", "Figure 2, the CPDI run", "stretched turn, 400 steps")
     return Section(
-        "misread", "Negative controls", notes(examination, CONTROLS),
-        [(add("misread", drawn, "Shear stress of the turned block by each negative control."),
+        "controls", "Negative controls", notes(examination, CONTROLS),
+        [(add("controls", drawn, "Shear stress of the turned block by each negative control."),
           "Shear stress along the motion of Figure 2 by each negative control, kinematic, 200 steps; the broad line is "
           "right, and crosses are the controls that this figure cannot tell from it.")],
         [Table(MISSES, head, rows),
@@ -93,7 +93,7 @@ def misread(examination: Examination, add: Add) -> Section:
 
 
 def orders(examination: Examination, add: Add) -> Section:
-    """Errors against the step."""
+    """Section of errors against the step."""
     errors = of(examination.curves, "errors")
     right = [name for name, curve in errors.items() if curve["right"][0]]
     steps = next(iter(errors.values()))["steps"]
@@ -108,7 +108,7 @@ def orders(examination: Examination, add: Add) -> Section:
 
 
 def rates(examination: Examination, add: Add) -> Section:
-    """The rates told apart."""
+    """Section of the rates in simple shear."""
     exact, computed = of(examination.curves, "shear"), of(examination.curves, "computed")
     images = [
         (add(f"shear_{key}", draw.shear(exact, computed, key), f"Component {key} of the stress in simple shear."), text)

@@ -1,4 +1,4 @@
-"""The command of a case that has none of its own: an option for each field of its Run, and those of any study."""
+"""Command of a case that has none of its own: an option for each field of its Run, and those of any study."""
 
 import ast
 from importlib import import_module

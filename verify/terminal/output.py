@@ -10,7 +10,7 @@ import typer
 
 @contextmanager
 def printing() -> Iterator[None]:
-    """Whatever is printed inside goes nowhere once nobody reads it; a full disk is one line."""
+    """Discard what is printed inside once nobody reads it; a full disk is one line."""
     try:
         yield
         if sys.stdout is not None:
