@@ -6,6 +6,7 @@ Nothing is imported here that a help text does not need: `verify --help` reads t
 import contextlib
 import os
 import sys
+from os import _exit  # before a user's file is executed, see solver/own_file.py
 
 from mpm_verify.verify.exits import DEFECT, STOPPED, USAGE
 
@@ -95,13 +96,20 @@ def called(asked: str) -> int:
 
     import typer
 
+    from mpm_verify.verify.terminal.output import printing
+
     try:
-        code = application(asked)(standalone_mode=False)  # type: ignore[operator]
+        with printing():
+            code = application(asked)(standalone_mode=False)  # type: ignore[operator]
+        if code == STOPPED:
+            raise KeyboardInterrupt
     except typer.TyperException as error:
         message = error.format_message() if hasattr(error, "format_message") else str(error)
         code = complain(message, USAGE if getattr(error, "exit_code", 1) == 1 else error.exit_code)
     except (typer.Abort, KeyboardInterrupt):
         code = complain("stopped; what was finished is stored, and the same command goes on from there", STOPPED)
+    except SystemExit as end:  # of the completion; and 1, which would read as a verdict, where nobody reads a help text
+        code = 0 if end.code == 1 else end.code
     except Exception:
         with suppress(OSError, ValueError, AttributeError):
             import traceback
@@ -115,6 +123,8 @@ def called(asked: str) -> int:
 
 def told(text: str, code: int) -> int:
     """Print, to somebody who may have gone; gives the exit code back, or USAGE where nothing can be written."""
+    if sys.stdout is None:
+        return code
     try:
         sys.stdout.write(text)
         sys.stdout.flush()
@@ -128,7 +138,12 @@ def told(text: str, code: int) -> int:
 def complain(message: str, code: int = USAGE) -> int:
     """Print one line on standard error, if anybody reads it; gives the exit code back."""
     if message.startswith("No such command"):
-        message = f"{message} Choose from {', '.join(files())}."
+        from mpm_verify.solver.plugins import meant
+
+        near = meant(message.split("'")[1], files())
+        message = f"{message.removesuffix('.')}{near}; choose from {', '.join(files())}"
+    if sys.stderr is None:  # print() would take standard output instead
+        return code
     with contextlib.suppress(OSError, ValueError, AttributeError):
         print(f"verify: {' '.join(message.split())}", file=sys.stderr, flush=True)
     return code
@@ -141,7 +156,7 @@ def run() -> None:
     except SystemExit as end:
         with contextlib.suppress(OSError, ValueError, AttributeError):
             sys.stdout.flush()
-        os._exit(end.code if isinstance(end.code, int) else 0)
+        _exit(end.code if isinstance(end.code, int) else 0)
 
 
 if __name__ == "__main__":

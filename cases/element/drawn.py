@@ -26,11 +26,12 @@ def drawn(material: Any, studies: list[ElementStudy], stress: float) -> Curves:
 
 
 def curves(studies: list[ElementStudy]) -> Curves:
-    """Curves by name: columns of `test/NAME` and `exact/NAME`; `errors/NAME`: steps, error; `kind/NAME`: its axes."""
+    """Curves by name: columns of `test/NAME` and `exact/NAME` where known; `errors/NAME`: steps, error; `kind/NAME`."""
     kept: Curves = {}
     for one in studies:
-        every = max(1, len(one.curve["s"]) // DRAWN)
-        kept[f"test/{one.test.name}"] = {name: values[::every] for name, values in one.curve.items()}
+        if one.curve:
+            every = max(1, len(one.curve["s"]) // DRAWN)
+            kept[f"test/{one.test.name}"] = {name: values[::every] for name, values in one.curve.items()}
         if one.truth is not None:
             kept[f"exact/{one.test.name}"] = one.truth
         errors = {"steps": np.array(one.steps, float), "error": np.array(one.errors)}

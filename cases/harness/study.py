@@ -20,7 +20,7 @@ Arrays = dict[str, Any]  # arrays of a run by name
 Head = tuple[tuple[str, Any], ...]  # names and values of all other fields of a Run: what a refinement is of
 
 
-def axis(default: Any, text: str, plugins: str = "") -> Any:
+def axis(default: Any, text: str, plugins: str = "", choices: tuple[str, ...] = ()) -> Any:
     """Declare a field of a Run, which can be an axis of a study.
 
     Parameters
@@ -31,13 +31,15 @@ def axis(default: Any, text: str, plugins: str = "") -> Any:
         What the field is: the help of its option.
     plugins
         Package whose plug-ins the field names; empty if it names none.
+    choices
+        Words that the field may be, which complete its option.
 
     Returns
     -------
     dataclasses.Field
         Default and metadata, from which options, TOML keys and documentation are made.
     """
-    return field(default=default, metadata={"help": text, "plugins": plugins})
+    return field(default=default, metadata={"help": text, "plugins": plugins, "choices": choices})
 
 
 @dataclass(frozen=True)
@@ -203,6 +205,8 @@ class Study(Generic[R]):
         Number of runs that must come to their end, of a case that counts them.
     case
         Name of the case.
+    made
+        Name of what it was built from, see cases/harness/reuse.py.
     format
         Number of the stored format.
     """
@@ -216,6 +220,7 @@ class Study(Generic[R]):
     words: tuple[str, ...] = ()
     finish: int = 0
     case: str = ""
+    made: str = ""
     format: int = FORMAT
 
 

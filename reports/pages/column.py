@@ -3,7 +3,8 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from mpm_verify.cases.column.exam import ColumnAnalysis
+from mpm_verify.cases.column.claims import FinishedRun
+from mpm_verify.cases.column.exam import ColumnAnalysis, curves
 from mpm_verify.cases.column.run import ColumnResult, ColumnRun
 from mpm_verify.cases.harness.store import Store, StoreError
 from mpm_verify.reports.components.examined import Section, checks_table, render
@@ -36,13 +37,19 @@ def sections(analysis: ColumnAnalysis, store: Store, add: Add) -> Sequence[Secti
     found = [summary(analysis, add)]
     if analysis.claims:
         found.append(said(analysis))
-    if analysis.ran:
-        found += [motion(analysis, add), energy(analysis, add), budget(analysis, add)]
-        if analysis.refined or analysis.scattered:
-            found.append(refinement(analysis, add))
-    ran = [(run, analysis.results[run.digest]) for run in analysis.study.runs if run.digest in analysis.results]
-    if ran:
-        found += [set_up(store, add, *ran[0]), films(analysis, store, add, ran), alive(analysis)]
+    if drawn := [one for one in analysis.ran if one.curves]:
+        labels = [words.label(analysis.study, one.run) for one in drawn]
+        found += [motion(drawn, labels, add), energy(drawn, labels, add), budget(drawn, labels, add)]
+    if analysis.refined or analysis.scattered:
+        found.append(refinement(analysis, add))
+    kept = [
+        (run, analysis.results[run.digest]) for run in analysis.study.runs
+        if run.digest in analysis.results and curves(store, analysis.results[run.digest])
+    ]  # fmt: skip
+    if kept:
+        found += [set_up(store, add, *kept[0]), films(analysis, store, add, kept)]
+    if analysis.results:
+        found.append(alive(analysis))
     return [*found, Section("checks", "Invariants, whatever the experiment says", tables=[
         checks_table("Checks", analysis.examination.checks, group=True)])]  # fmt: skip
 
@@ -97,9 +104,8 @@ def said(analysis: ColumnAnalysis) -> Section:
         Table("Sentences of the paper on this axis", head, rows, texts=head[1:])])  # fmt: skip
 
 
-def motion(analysis: ColumnAnalysis, add: Add) -> Section:
+def motion(ran: Sequence[FinishedRun], labels: Sequence[str], add: Add) -> Section:
     """Section of fronts and final profiles."""
-    ran, labels = analysis.ran, [words.label(analysis.study, one.run) for one in analysis.ran]
     return Section("motion", "Run-out", figures=[
         (add("front", draw.fronts(ran, labels), "Front against time; its final values are in the table of runs."),
          "Front against normalised time. Shaded: where the experiment's front rests; dashes: the times of that."),
@@ -108,19 +114,18 @@ def motion(analysis: ColumnAnalysis, add: Add) -> Section:
     ])  # fmt: skip
 
 
-def budget(analysis: ColumnAnalysis, add: Add) -> Section:
+def budget(ran: Sequence[FinishedRun], labels: Sequence[str], add: Add) -> Section:
     """Section of the energy budgets of the first run and of the last."""
     figures = []
-    for number, key in {0: "first", len(analysis.ran) - 1: "last"}.items():
-        one, label = analysis.ran[number], words.label(analysis.study, analysis.ran[number].run)
-        image = add(f"budget_{key}", draw.budget(one), f"Layers of the energy budget over time, {label}.")
+    for number, key in {0: "first", len(ran) - 1: "last"}.items():
+        label = labels[number]
+        image = add(f"budget_{key}", draw.budget(ran[number]), f"Layers of the energy budget over time, {label}.")
         figures.append((image, f"{label[0].upper()}{label[1:]}. The line on top stays at 1 as the budget closes."))
     return Section("budget", "Where the energy goes", figures=figures)
 
 
-def energy(analysis: ColumnAnalysis, add: Add) -> Section:
+def energy(ran: Sequence[FinishedRun], labels: Sequence[str], add: Add) -> Section:
     """Section of the energies of all runs."""
-    ran, labels = analysis.ran, [words.label(analysis.study, one.run) for one in analysis.ran]
     figures = [
         (add(name, draw.energy(ran, labels, name), f"{name.capitalize()} energy of each run over time."),
          f"The paper's Figure 6: {name} energy.")

@@ -8,6 +8,7 @@ from mpm_verify.cases.column.claims import Claim, ClaimCode, Compared, beyond
 from mpm_verify.cases.column.exam import ColumnRemark
 from mpm_verify.cases.column.experiment import Band
 from mpm_verify.cases.column.run import ColumnRun, ColumnStudy
+from mpm_verify.reports.sentences.remarks import unread
 
 NOTHING = {
     ("smoothing", "none"): "no smoothing", ("start", "none"): "no stress at first", ("limit", inf): "no limit",
@@ -246,6 +247,11 @@ def claims(n: Mapping[str, Any]) -> str:
     return f"Sentences of the paper: {n['reproduced']:g} reproduced, {n['not_reproduced']:g} not{untold}."
 
 
+def unread_curves(n: Mapping[str, Any]) -> str:
+    """Sentence on the figures and sentences that are left out."""
+    return f"{unread(n)} So are sentences of the paper that are about curves."
+
+
 REMARKS: dict[str, Callable[[Mapping[str, Any]], str]] = {
     ColumnRemark.FINISHED: lambda n: f"{n['finished']:g} of {n['runs']:g} runs came to their end.",
     ColumnRemark.FAILED: lambda n: f"{n['failed']:g} failed; the table says where and why.",
@@ -259,6 +265,7 @@ REMARKS: dict[str, Callable[[Mapping[str, Any]], str]] = {
         f"The front comes to {n['front']:.3f} m, and the height at the wall is {n['height']:.3f} m. The method itself "
         f"loses {100 * n['lost']:.1f} % of the energy."
     ),
+    ColumnRemark.UNREAD: unread_curves,
     ColumnRemark.BANDS: lambda n: (
         "The band of the experiment lies between two forms in which texts quote its scaling, that of the height "
         "between two experiments; they are not error bars. No curve of the experiment is shown, as none is at hand."

@@ -1,4 +1,4 @@
-"""Printing to somebody who may have gone: `verify list | head -1` is no error."""
+"""Printing to a reader who may have gone: `verify list | head -1` is not an error."""
 
 import os
 import sys
@@ -10,7 +10,10 @@ import typer
 
 @contextmanager
 def printing() -> Iterator[None]:
-    """Discard what is printed inside once nobody reads it; a full disk is one line."""
+    """Discard what is printed inside once nobody reads it; a full disk is one line.
+
+    An error that names a file has nothing to do with standard output, and is left as it is.
+    """
     try:
         yield
         if sys.stdout is not None:
@@ -18,6 +21,8 @@ def printing() -> Iterator[None]:
     except BrokenPipeError:
         silence()
     except OSError as error:
+        if error.filename is not None:
+            raise
         silence()
         raise typer.TyperException(f"cannot write to standard output: {error.strerror}") from error
 
