@@ -39,7 +39,7 @@ class Block(RunRecord):
         if self.ppc < 1 or isqrt(self.ppc) ** 2 != self.ppc:
             raise ValueError(f"{self.ppc} particles per cell is not a square number; choose from 1, 4, 9, 16, ...")
         if not 4 <= self.cells <= 128:
-            raise ValueError(f"cells = {self.cells} must be from 4 to 128: the walls of the block are a cell thick")
+            raise ValueError(f"{self.cells} cells along the block must be from 4 to 128: its walls are a cell thick")
         if self.rate not in (*available(RATES), *available(NEGATIVE_CONTROLS)):
             raise ValueError(f"no rate {self.rate!r}; choose from {', '.join(available(RATES))}")
         if self.part not in (BLOCK, KINEMATIC):
