@@ -36,9 +36,9 @@ def test_three_files_are_a_basis_a_material_and_a_solution(tmp_path: Path) -> No
     for name, text in written.items():
         (tmp_path / name).write_text(text)
     got = verify(
-        tmp_path, "mms", "--method", "./tent.py", "--method", "mpm", "--method", "cpdi", "--solution", "./breathing.py",
-        "--material", "./saint_venant.py", "--cells", "8,16,32,64", "--ppc", "4", "--out", "study",
-        "--jobs", "2", "--page",
+        tmp_path, "mms", "--method", "./tent.py,mpm,cpdi", "--solution", "./breathing.py",
+        "--material", "./saint_venant.py", "--cells", "8,16,32,64", "--ppc", "4",
+        "--out", "study", "--jobs", "2", "--page",
     )  # fmt: skip
     judged = {(Path(v["method"]).stem, v["expected"], v["verdict"]) for v in got["verdicts"]}
     assert judged == {("cpdi", 2.0, "PASS")}  # the order that it promises; the others keep none where particles cross

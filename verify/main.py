@@ -29,12 +29,28 @@ ended in error, or a defect of verify.
 
 
 def files() -> dict[str, str]:
-    """File of each command by its name: those of FIRST first; a case without a command file has its `case.py`."""
+    """File of each command by its name: those of FIRST first; a case without a command file has its `case.py`.
+
+    A command is called as the first line of its file says: that of the case `element` is `verify material`.
+    """
     own = {file[:-3]: os.path.join(HERE, "commands", file) for file in os.listdir(os.path.join(HERE, "commands"))
            if file.endswith(".py") and not file.startswith("_")}  # fmt: skip
     found = {name: os.path.join(CASES, name, "case.py") for name in os.listdir(CASES)}
     found = {name: file for name, file in found.items() if os.path.exists(file)} | own
+    found = {called_by(file) or name: file for name, file in found.items()}
     return {name: found[name] for name in sorted(found, key=lambda name: (name not in FIRST, rank(name)))}
+
+
+def first_line(file: str) -> str:
+    """First line of a file's docstring."""
+    with open(file, encoding="utf-8") as text:
+        return text.readline().strip().strip('"')
+
+
+def called_by(file: str) -> str:
+    """NAME in a first line that begins with `verify NAME; empty where there is none."""
+    words = first_line(file).replace("`", " ").split()
+    return words[1].rstrip(":") if words[:1] == ["verify"] else ""
 
 
 def rank(name: str) -> tuple[int, str]:
@@ -46,8 +62,7 @@ def help_text() -> str:
     """Text of the help, a line for each command: the first line of their files."""
     lines = []
     for name, file in files().items():
-        with open(file, encoding="utf-8") as text:
-            first = text.readline().strip().strip('"')
+        first = first_line(file)
         told = first.partition("`: ")[2] or first
         lines.append(f"  {name:13}{told[:1].upper()}{told[1:]}")
     return HELP.format(commands="\n".join(lines))
@@ -67,7 +82,7 @@ def application(asked: str = "") -> object:
         if known[name].startswith(CASES):
             import_module("mpm_verify.verify.commands._case").add(app, name)
         else:
-            import_module(f"mpm_verify.verify.commands.{name}").add(app)
+            import_module(f"mpm_verify.verify.commands.{os.path.basename(known[name])[:-3]}").add(app)
     return app
 
 

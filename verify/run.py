@@ -56,7 +56,8 @@ def usage() -> Iterator[None]:
         yield
     except SystemExit as error:
         raise typer.TyperException(
-            f"a file of yours ended the program, with {error.code!r}; a study ends with its own exit code"
+            f"a file of yours ended the program, with {error.code!r}; a study ends with its own exit code; stored runs "
+            "are kept"
         ) from error
     except RunnerError as error:
         raise Ended(str(error), DEFECT if error.defect else USAGE) from error
@@ -194,7 +195,7 @@ class Estimate:
 
     def __str__(self) -> str:
         """Estimate in one line."""
-        told = f"{self.runs} runs to be done, {self.stored} stored, up to {self.particles:,} particles"
+        told = f"{self.runs} run{'s' * (self.runs != 1)} to be done, {self.stored} stored, up to {self.particles:,} particles"
         return f"{told}, about {self.memory / 2**30:.1f} GB of memory and {duration(self.seconds)}"
 
 

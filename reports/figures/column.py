@@ -23,6 +23,7 @@ from mpm_verify.solver.state import Floats
 
 WIDE = 5.4
 SIZE = WIDE, 4.4
+LINES, LINE = 3, 0.22  # of a legend that such a figure has room for; height of one more, inches
 SAND = "#e8d5a3"
 DARK, PALE = "#4a3728", "#d9bf86"  # bands of sand, as in the experiment
 BANDS = 10  # of the column's height
@@ -221,9 +222,11 @@ def stroke(number: int) -> dict[str, Any]:
 
 
 def legend(figure: Figure, labels: Labels, columns: int = 2) -> None:
-    """Draw the legend below, in as many columns as the labels leave room for."""
+    """Draw the legend below, in as many columns as labels leave room for; for many lines the figure grows."""
     handles, names = figure.axes[0].get_legend_handles_labels()
     if len(labels) > 1:
         longest = max(map(len, labels))
         columns = 1 if longest > 34 else columns
+        wide, high = figure.get_size_inches()
+        figure.set_size_inches(wide, high + LINE * max(0, -(-len(labels) // columns) - LINES))
         figure.legend(handles, names, loc="outside lower center", ncols=columns, fontsize=10, handlelength=2.4)

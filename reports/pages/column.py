@@ -120,7 +120,7 @@ def budget(ran: Sequence[FinishedRun], labels: Sequence[str], add: Add) -> Secti
     for number, key in {0: "first", len(ran) - 1: "last"}.items():
         label = labels[number]
         image = add(f"budget_{key}", draw.budget(ran[number]), f"Layers of the energy budget over time, {label}.")
-        figures.append((image, f"{label[0].upper()}{label[1:]}. The line on top stays at 1 as the budget closes."))
+        figures.append((image, f"Run: {label}. The line on top stays at 1 as the budget closes."))
     return Section("budget", "Where the energy goes", figures=figures)
 
 
@@ -131,7 +131,7 @@ def energy(ran: Sequence[FinishedRun], labels: Sequence[str], add: Add) -> Secti
          f"The paper's Figure 6: {name} energy.")
         for name in ("potential", "kinetic")
     ]  # fmt: skip
-    columns = ("potential", "kinetic", "seen by the grid", "elastic", "plastic", "damping", "walls", "transfer",
+    columns = ("potential", "kinetic", "on the grid", "elastic", "plastic", "damping", "walls", "transfer",
                "convection", "residual")  # fmt: skip
     rows = []
     for one, label in zip(ran, labels, strict=True):
