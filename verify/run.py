@@ -195,7 +195,8 @@ class Estimate:
 
     def __str__(self) -> str:
         """Estimate in one line."""
-        told = f"{self.runs} run{'s' * (self.runs != 1)} to be done, {self.stored} stored, up to {self.particles:,} particles"
+        runs = f"{self.runs} run{'s' * (self.runs != 1)} to be done, {self.stored} stored"
+        told = f"{runs}, up to {self.particles:,} particles"
         return f"{told}, about {self.memory / 2**30:.1f} GB of memory and {duration(self.seconds)}"
 
 

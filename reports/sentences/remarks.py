@@ -29,7 +29,7 @@ def lead(examination: Examination) -> str:
 
 
 def leads(examinations: Mapping[str, Examination]) -> list[str]:
-    """What came out of each, with its name where there are several."""
+    """Leads: what came out of each, with its name where there are several."""
     several = len(examinations) > 1
     return [f"{name}: {lead(one)}" if several else lead(one) for name, one in examinations.items()]
 
