@@ -178,7 +178,7 @@ def test_parts_are_run_together_and_each_run_once() -> None:
         ("[[part]]\ntitle = 'a'", r"\[\[part\]\] has 'title', and may have run, sweep"),
         ("[[part]]\nrun.ppc = 4\nsweep.ppc = [4]", r"ppc must stand in \[run\] or in \[sweep\], not in both"),
         ("[run]\nppc = 4\n[[part]]\nsweep.ppc = [4, 9]", "not in both"),
-        ("[[part]]\n[[part]]\nrun.ppc = 5", "5 particles per cell is no square number"),
+        ("[[part]]\n[[part]]\nrun.ppc = 5", "5 particles per cell is not a square number"),
         ("finish = 2\n[[part]]\nrun.ppc = 4", "finish = 2 must be a whole number from 0 to the 1 runs there are"),
     ],
 )
@@ -250,10 +250,10 @@ def test_another_value_is_another_folder(case: str, field: str, here: str) -> No
         ("mms", {"cells": ("8",)}, "cells = '8': input should be a valid integer"),
         ("mms", {"cells": (True,)}, "cells = True: input should be a valid integer"),
         ("mms", {"staggered": (1,)}, "staggered = 1: input should be a valid boolean"),
-        ("mms", {"ppc": (5,)}, "5 particles per cell is no square number; choose from 1, 4, 9, 16"),
+        ("mms", {"ppc": (5,)}, "5 particles per cell is not a square number; choose from 1, 4, 9, 16"),
         ("mms", {"courant": (0.2, 0.4)}, "courant = 0.4 is above the first, 0.2; begin with the largest: 0.4,0.2,0.1"),
         ("mms", {"courant": (0.4, 1e-9)}, "courant = 1e-09 cannot be run; choose 0.001 to 10"),
-        ("mms", {"offset": ((0.0, 0.0), (0.1, 0.0))}, "offset: give one; replicates shift the particles"),
+        ("mms", {"offset": ((0.0, 0.0), (0.1, 0.0))}, "offset takes one value in a refinement"),
         ("mms", {"offset": ((0.1,),)}, "offset = "),
         ("mms", {"stress": ("late",)}, "late"),
         ("mms", {"method": ("fem",)}, "no method 'fem'; choose from"),
@@ -262,9 +262,9 @@ def test_another_value_is_another_folder(case: str, field: str, here: str) -> No
         ("mms", {"transfer": ("flop",)}, "no transfer 'flop'; choose from"),
         ("column", {"aspect": (6.5001,)}, "must make whole cells"),
         ("element", {"test": ("triaxial",)}, "no test 'triaxial'; choose from isotropic"),
-        ("element", {"path": ("a.csv",)}, "path: a file belongs to test = path"),
+        ("element", {"path": ("a.csv",)}, "path = FILE.csv and test = path belong together"),
         ("objectivity", {"cells": (2,)}, "2 cells along the block must be from 4 to 128"),
-        ("wave_bar", {"ppc": (3,)}, "3 particles per cell is no square number"),
+        ("wave_bar", {"ppc": (3,)}, "3 particles per cell is not a square number"),
     ],
 )
 def test_one_line_says_what_is_wrong(case: str, given: dict[str, Sequence[Any]], says: str) -> None:

@@ -71,7 +71,7 @@ def test_the_study_in_readme(tmp_path: Path) -> None:
         ("[sweep]\nppc = 4", "ppc in .sweep. must be a list of one value or more, not 4"),
         ("[sweep]\nppc = []", "must be a list of one value or more"),
         ("[run]\nppc = 4\n[sweep]\nppc = [4, 9]", "must stand in .run. or in .sweep., not in both"),
-        ("[sweep]\nppc = [4, 3]", "3 particles per cell is no square number"),
+        ("[sweep]\nppc = [4, 3]", "3 particles per cell is not a square number"),
         ("[run]\nppc = 'four'", "ppc = 'four': input should be a valid integer"),
         ("[run]\ncells = '4'", "cells = '4': input should be a valid integer"),
         ("[run]\ncells = true", "cells = True: input should be a valid integer"),

@@ -595,13 +595,13 @@ def test_intervals_cover_the_truth_as_often_as_they_say(replicates: int) -> None
 
 
 def test_misuse_is_refused() -> None:
-    with pytest.raises(ValueError, match="share a cell size"):
+    with pytest.raises(ValueError, match="have the same cell size"):
         judge([Level(0.1, (1.0,)), Level(0.1, (2.0,))], SECOND, floor=0.0, dt_halved=None)
-    with pytest.raises(ValueError, match="not a level"):
+    with pytest.raises(ValueError, match="a level needs h > 0"):
         Level(0.0, (1.0,))
-    with pytest.raises(ValueError, match="not a level"):
+    with pytest.raises(ValueError, match="a level needs h > 0"):
         Level(0.1, (-1.0,))
     with pytest.raises(ValueError, match="belong together"):
         Expectation(2.0, constant=1.0)
-    with pytest.raises(ValueError, match="width"):
+    with pytest.raises(ValueError, match="must both be above zero"):
         Expectation(2.0, below=0.0)

@@ -218,7 +218,7 @@ def test_create_does_not_write_over_a_broken_study(store: Store, text: str) -> N
 
 
 def test_no_study_folder(tmp_path: Path) -> None:
-    with pytest.raises(StoreError, match=r"is no study folder: it holds no study\.json"):
+    with pytest.raises(StoreError, match=r"is not a study folder: it has no study\.json"):
         Store(tmp_path).study()
 
 
