@@ -51,9 +51,12 @@ CONTRACTS = {  # what the class of a kind has at least
 
 
 def available(package: str) -> list[str]:
-    """Names of the plug-ins in a package such as `solver.basis`, found without importing anything."""
+    """Names of the plug-ins in a package such as `solver.basis`, found without importing anything.
+
+    Of cases, the folders that hold what computes a run: the harness has a `case.py` too, which is the contract.
+    """
     files = (file.stem for file in folder(package).glob("*.py") if not file.stem.startswith("_"))
-    return sorted([*files, *(file.parent.name for file in folder(package).glob("*/case.py"))])
+    return sorted([*files, *(file.parent.name for file in folder(package).glob("*/execute.py"))])
 
 
 def folder(package: str) -> Path:

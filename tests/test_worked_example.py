@@ -37,7 +37,7 @@ def test_three_files_are_a_basis_a_material_and_a_solution(tmp_path: Path) -> No
         (tmp_path / name).write_text(text)
     got = verify(
         tmp_path, "mms", "--method", "./tent.py", "--method", "mpm", "--method", "cpdi", "--solution", "./breathing.py",
-        "--material", "./saint_venant.py", "--cells", "8,16,32,64", "--ppc", "4", "--out", "study", "--jobs", "2",
+        "--material", "./saint_venant.py", "--cells", "8,16,32,64", "--ppc", "4", "--out", "study", "--jobs", "2", "--page",
     )  # fmt: skip
     runs = [(Path(r["method"]).stem, r) for r in got["runs"] if r["status"] == "finished"]
     errors = {(method, r["cells"]): r["errors"]["u"]["rms"] for method, r in runs}

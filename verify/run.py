@@ -23,8 +23,6 @@ SMALL = 4e7  # cost below which worker processes take longer to start than they 
 HOUR = 3600.0
 UPDATES = 3e6  # particle updates a second of one process, on the slow side
 PARTICLE, NODE, PROCESS = 500.0, 200.0, 3e8  # bytes: of a particle, of a node, of a process
-MOST_RUNS = 10_000
-
 NOT_REPEATED = ("--out", "--junit", "--json", "--jobs", "--threads", "--summary", "--page", "--no-page", "--yes",
                 "--dry-run", "--vtk", "--no-vtk")  # fmt: skip
 
@@ -39,7 +37,7 @@ class Settings:
     json_output: bool = False
     junit: Path | None = None
     summary: Path | None = None
-    page: bool | None = None  # None: unless JSON, JUnit or a summary are asked for
+    page: bool | None = None  # None: unless JSON or JUnit are asked for alone
     vtk: bool = False
     dry_run: bool = False
     yes: bool = False
@@ -101,7 +99,7 @@ def draw(record: "Record", settings: Settings) -> Path | None:
     """The page of the study; None where none is asked for."""
     wanted = settings.page
     if wanted is None:
-        wanted = not (settings.json_output or settings.junit)
+        wanted = settings.vtk or not (settings.json_output or settings.junit)
     return page_of(record, settings.vtk) if wanted else None
 
 

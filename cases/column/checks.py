@@ -10,11 +10,11 @@ its momentum is not counted. All these are told, and not judged. How many runs c
 """
 
 from collections.abc import Sequence
-from math import sqrt
+from math import inf, sqrt
 from typing import Any
 
 from mpm_verify.cases.column.claims import FinishedRun, values
-from mpm_verify.cases.column.run import AT_REST, ColumnRun, ColumnStudy
+from mpm_verify.cases.column.run import ColumnRun, ColumnStudy
 from mpm_verify.cases.harness.checks import Check, Way
 from mpm_verify.solver.plugins import METHODS, SMOOTHINGS, TRANSFERS, create, load, split
 
@@ -42,7 +42,7 @@ def checks(study: ColumnStudy, ran: Sequence[FinishedRun]) -> list[Check]:
         ("Courant number with the stiffness and speed of the moment", ran, [one.values["most_courant"] for one in ran],
          STABLE, "stability of the step"),
     ]  # fmt: skip
-    rested = sum(one.values["on_grid"] <= AT_REST * float(one.curves["potential"][0]) for one in ran)
+    rested = sum(one.values["rest"] < inf for one in ran)
     found = [Check("Runs", f"runs at rest out of {len(study.runs)}", float(rested), float(study.finish),
                    "at least", "declared by the study")]  # fmt: skip
     way: Way = "at most"

@@ -12,7 +12,6 @@ Wall = Literal["roller", "fixed"]
 MOST = 1000  # cells: 4 GB of grid
 STRIPS = 7  # of the width
 AT_REST = 1e-4  # kinetic energy of the grid, of the potential energy at first: a run below it rests
-PLUGINS = {"method": METHODS, "law": MATERIALS, "transfer": TRANSFERS, "smoothing": SMOOTHINGS}
 
 
 @dataclass(frozen=True)

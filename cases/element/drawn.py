@@ -26,11 +26,14 @@ def drawn(law: Any, studies: list[ElementStudy], stress: float) -> Curves:
 
 
 def curves(studies: list[ElementStudy]) -> Curves:
-    """`test/NAME` and `exact/NAME` columns, `errors/NAME`: steps, error; `kind/NAME`: what its axes are."""
+    """`test/NAME` and `exact/NAME` columns where they are known, `errors/NAME`: steps, error; `kind/NAME`: its
+    axes.
+    """
     kept: Curves = {}
     for one in studies:
-        every = max(1, len(one.curve["s"]) // DRAWN)
-        kept[f"test/{one.test.name}"] = {name: values[::every] for name, values in one.curve.items()}
+        if one.curve:
+            every = max(1, len(one.curve["s"]) // DRAWN)
+            kept[f"test/{one.test.name}"] = {name: values[::every] for name, values in one.curve.items()}
         if one.truth is not None:
             kept[f"exact/{one.test.name}"] = one.truth
         errors = {"steps": np.array(one.steps, float), "error": np.array(one.errors)}

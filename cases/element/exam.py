@@ -1,7 +1,7 @@
 """`verify material`: element tests of one material as an Examination, with errors and orders in the strain step."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from enum import StrEnum
 from typing import Any
 
@@ -44,6 +44,7 @@ class ElementRemark(StrEnum):
     PATH_READ = "element.path_read"  # columns of a file
     PATH_ZERO = "element.path_zero"  # in every row, as in plane strain
     PATH_UNUSED = "element.path_unused"
+    UNREAD = "element.unread"  # files of curves that cannot be read
 
 
 def checks(law: Any, studied: ElementStudy) -> list[Check]:
@@ -53,7 +54,7 @@ def checks(law: Any, studied: ElementStudy) -> list[Check]:
         at = f"step {studied.failed.step} of {studied.failed.steps}"
         return [Check(group, f"early end, at {at}", float("nan"), 0.0, "absolute", "all steps solved")]
     finest = studied.errors[-1]
-    if studied.truth is not None:
+    if studied.source:
         second = 1e-6 * (1600 / studied.steps[-1]) ** 2  # what order 2 makes of 1e-6 in 1600 steps
         allowed = max(second, ROUND_OFF) if law.order == 2 else ROUND_OFF
         found.append(Check(group, "error at the end, finest", finest, allowed, "at most", studied.source))
@@ -69,16 +70,17 @@ def examination(
     studies: Sequence[ElementStudy],
     known: Sequence[Check],
     reads: Sequence[PathSource],
+    unread: Sequence[str],
     environment: dict[str, str],
-    before: str = "",
 ) -> Examination:
-    """Tests of one material, with what is known of it; `before` goes in front of the names of the parts."""
+    """Tests of one material, with what is known of it; `unread` are files of curves that cannot be read."""
     found = [*(check for one in studies for check in checks(law, one)), *known]
     remarks = [*lead(law, studies, found), *rate_idle(run.material), *read(reads)]
     remarks += [remark for one in studies for remark in notes(law, one)]
-    named = [replace(check, group=before + check.group) for check in found]
+    if unread:
+        remarks.append(Remark(ElementRemark.UNREAD, {"files": ", ".join(unread)}))
     return Examination(
-        study.name, study.title, study.command, tuple(remarks), tuple(named), parameters(law, run.stress, run.steps),
+        study.name, study.title, study.command, tuple(remarks), tuple(found), parameters(law, run.stress, run.steps),
         origins(law), environment, drawn(law, list(studies), run.stress),
     )  # fmt: skip
 
@@ -144,7 +146,7 @@ def notes(law: Any, one: ElementStudy) -> list[Remark]:
 
 def beyond(law: Any, one: ElementStudy) -> float | None:
     """Fraction of the finest run's steps in which zz leaves the plane's range; None of a material that sees zz."""
-    if law.name not in PLANE_ALONE or len(one.curve["s"]) < 2:
+    if law.name not in PLANE_ALONE or len(one.curve.get("s", ())) < 2:
         return None
     sigma = np.column_stack([-one.curve["sx"], -one.curve["sy"], -one.curve["sz"], one.curve["tau"]])
     return float(np.mean(PLANE_ALONE[law.name](sigma[1:])))

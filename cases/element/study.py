@@ -17,7 +17,10 @@ ROUND_OFF = 1e-9  # relative errors below it have no order
 
 @dataclass(frozen=True)
 class ElementStudy:
-    """One test: its curve, the exact one and its source, the errors at each number of steps, and the last order."""
+    """One test: its curve, the exact one and its source, the errors at each number of steps, and the last order.
+
+    `curve` is empty where it cannot be read; an exact curve is known where `source` says what it is.
+    """
 
     test: ElementTest
     curve: Columns
@@ -33,7 +36,7 @@ class ElementStudy:
 
         Against the test's own curve the last is left out: a quarter of that curve's steps shares too much of its error.
         """
-        seen = [error for error in (self.errors if self.truth else self.errors[:-1]) if error > ROUND_OFF]
+        seen = [error for error in (self.errors if self.source else self.errors[:-1]) if error > ROUND_OFF]
         return log2(seen[-2] / seen[-1]) if len(seen) > 1 else float("nan")
 
 

@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from itertools import product
+from math import prod
 from typing import Any, cast, get_type_hints
 
 from pydantic import TypeAdapter, ValidationError
@@ -13,6 +14,7 @@ from mpm_verify.cases.harness.refinement import complete, refines
 from mpm_verify.cases.harness.study import QuantityPlan, RunRecord, Study, head
 
 Values = Mapping[str, Sequence[Any]]
+MOST = 10_000  # runs of a study, without those that its judgement adds
 FIRST = ("method", "solution", "material")  # axes whose values begin the name of a study
 
 
@@ -55,7 +57,9 @@ def union(
         runs += more
         plans += declared
     once = tuple(dict.fromkeys(runs))
-    unique = tuple({(plan.head, plan.quantity, plan.norm): plan for plan in reversed(plans)}.values())[::-1]
+    unique: dict[Any, QuantityPlan[Any]] = {}
+    for plan in plans:
+        unique.setdefault((plan.head, plan.quantity, plan.norm), plan)
     least = len(once) if finish is None else finish
     if isinstance(least, bool) or not isinstance(least, int) or not 0 <= least <= len(once):
         raise ValueError(f"finish = {finish!r} must be a whole number from 0 to the {len(once)} runs there are")
@@ -64,7 +68,7 @@ def union(
         title or case.title(once),
         command,
         once,
-        unique,
+        tuple(unique.values()),
         axes(once),
         tuple(words),
         least,
@@ -95,11 +99,12 @@ def _runs(asked: Asked) -> tuple[tuple[Any, ...], list[QuantityPlan[Any]]]:
         order = [key for key in values if key not in inner] + inner
     else:
         order = [*(key for key in asked.values if key in values), *(key for key in values if key not in asked.values)]
+    if (count := prod(len(values[key]) for key in order)) > MOST:
+        raise ValueError(f"{count} runs are asked for, and {MOST} is the most; give fewer values, or several studies")
     points = [dict(zip(order, point, strict=True)) for point in product(*(values[key] for key in order))]
     runs = tuple(dict.fromkeys(make(case, point) for point in points))
-    for courant in times:
-        make(case, {**points[-1], "courant": courant})  # says what is wrong with it
-    case.check(runs)
+    smaller = [make(case, {**point, "courant": courant}) for courant in times for point in points]
+    case.check((*runs, *smaller))
     if not (case.quantities and refines(case.Run)):
         return tuple(dict.fromkeys(case.companions(runs))), []
     plans = [plan for one in {head(run): run for run in reversed(runs)}.values() for plan in declare(case, one)]

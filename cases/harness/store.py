@@ -118,9 +118,9 @@ class Store:
                 raise StoreError(
                     f"{path} has format {data.get('format')}, this version reads {FORMAT}; use another --out folder"
                 )
-            if data.get("case") != self.case:
+            if data.get("case", self.case) != self.case:
                 raise StoreError(
-                    f"{path.parent} holds the case {data.get('case')}, not {self.case}; use another --out folder"
+                    f"{self.folder} holds the case {data['case']}, not {self.case}; use another --out folder"
                 )
             return adapter.validate_python(data)
         except FileNotFoundError as error:

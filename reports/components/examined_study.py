@@ -19,7 +19,7 @@ def page(record: Record, sections: Sections, kinds: Sequence[str] = ("svg", "pdf
     whole = replace(
         next(iter(found.values())),
         title=record.study.title,
-        checks=tuple(check for one in found.values() for check in one.checks),
+        checks=record.analysis.checks,
         findings=tuple(finding for one in found.values() for finding in one.findings),
     )
     return render(record.store.folder, whole, lambda _, add: every(found, sections, add), kinds)
@@ -32,8 +32,7 @@ def every(found: Mapping[str, Examination], sections: Sections, add: Add) -> Seq
     parts = []
     for number, (name, one) in enumerate(found.items(), 1):
         mine = sections(one, numbered(add, number))
-        heading = name.rstrip(": ")
-        parts += [replace(part, key=f"{part.key}-{number}", heading=f"{heading}: {part.heading}") for part in mine]
+        parts += [replace(part, key=f"{part.key}-{number}", heading=f"{name}: {part.heading}") for part in mine]
     return parts
 
 

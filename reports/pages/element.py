@@ -23,7 +23,7 @@ def page(record: Record, vtk: bool = False) -> Path:
 
 def sections(examination: Examination, add: Add) -> Sequence[Section]:
     """A section a test, one for the errors, one for what is known of the material."""
-    names = [name.partition("/")[2] for name in examination.curves if name.startswith("test/")]
+    names = [name.partition("/")[2] for name in examination.curves if name.startswith("errors/")]
     noted = dict.fromkeys(finding.group for finding in examination.findings if finding.group)
     titles = dict(zip(names, noted, strict=True))
     tests = [test(examination, name, titles[name], add) for name in names]
@@ -31,19 +31,23 @@ def sections(examination: Examination, add: Add) -> Sequence[Section]:
     known = [checks_table(group, [c for c in examination.checks if c.group == group]) for group in rest]
     own = [
         Section(
-            "law",
+            "known",
             "What is known of the material",
             ["Tables, limits and invariants, in runs of 100 steps unless said."],
             (),
             known,
         )
     ]
-    return [*tests, steps(examination, titles, add), *(own if known else [])]
+    return [*tests, *([steps(examination, titles, add)] if titles else []), *(own if known else [])]
 
 
 def test(examination: Examination, name: str, title: str, add: Add) -> Section:
     """Stress path, stress and volume against strain, with the closed form below where there is one."""
     curves = examination.curves
+    checks = [check for check in examination.checks if check.group == title]
+    tables, words = [checks_table("Checks", checks)] if checks else [], [" ".join(notes(examination, title))]
+    if f"test/{name}" not in curves:
+        return Section(name, title, words, (), tables)
     curve, exact = curves[f"test/{name}"], curves.get(f"exact/{name}")
     shear, strength = bool(curves[f"kind/{name}"]["shear"][0]), curves.get("strength")
     line = (float(strength["a"][0]), float(strength["b"][0])) if strength else None
@@ -64,9 +68,7 @@ def test(examination: Examination, name: str, title: str, add: Add) -> Section:
     if np.abs(curve["ev"]).max() > 1e-9:
         volume = draw.volume(curve, exact, x, shear, points.get("ev", ()))
         images.append((add(f"{name}_volume", volume, f"{title}: volume strain."), "Volume strain."))
-    checks = [check for check in examination.checks if check.group == title]
-    tables = [checks_table("Checks", checks)] if checks else []
-    return Section(name, title, [" ".join(notes(examination, title))], images, tables)
+    return Section(name, title, words, images, tables)
 
 
 def steps(examination: Examination, titles: dict[str, str], add: Add) -> Section:

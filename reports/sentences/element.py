@@ -5,7 +5,7 @@ from typing import Any
 
 from mpm_verify.cases.element.element import ElementFailure
 from mpm_verify.cases.element.exam import ElementRemark as Code
-from mpm_verify.reports.sentences.remarks import Words
+from mpm_verify.reports.sentences.remarks import Words, unread
 from mpm_verify.solver.material.ubcsand import Ubcsand
 
 Numbers = Mapping[str, Any]
@@ -59,6 +59,7 @@ REMARKS: dict[str, Words] = {
     ),
     Code.PATH_ZERO: lambda n: f"{n['columns']}: zero in every row, as in plane strain, which is what is computed.",
     Code.PATH_UNUSED: lambda n: f"Not used of {n['file']}: {n['columns']}.",
+    Code.UNREAD: unread,
     Code.FAILED: failed,
     Code.AGAINST: lambda n: f"Errors are against: {n['source']}.",
     Code.AGAINST_OWN: lambda n: f"Errors are against: its own curve with {n['times']:g} times the steps.",

@@ -46,6 +46,14 @@ def parameter(examination: Examination, name: str) -> str:
     return text if code is None else f"{text} ({sentence(Remark(code))})"
 
 
+def unread(n: Numbers) -> str:
+    """Which figures there are not."""
+    return (
+        f"The curves in {n['files']} cannot be read, and their figures are left out; once they are deleted with their "
+        ".json files, the same command computes those runs again."
+    )
+
+
 def missed(n: Numbers) -> str:
     """`2 of 30 checks did not pass; they stand first.`"""
     return f"{n['missed']:g} of {n['checks']:g} checks did not pass; they stand first."

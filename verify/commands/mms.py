@@ -27,7 +27,8 @@ def mms(asked: dict[str, list[str]], replicates: int, quick: bool, out: Path | N
     chosen = sorted({run.cells for run in study.runs})
     if "cells" not in asked and chosen != list(usual):
         cells = ",".join(map(str, chosen))
-        typer.echo(f"cells chosen: {cells}, which fill the body as {','.join(map(str, usual))} do not", err=True)
+        wanted = ",".join(map(str, usual))
+        typer.echo(f"cells chosen: {cells}, which fill the body as {wanted} do not; --cells takes others", err=True)
     return conduct(study, Settings(named(study, out), **more))
 
 

@@ -10,5 +10,5 @@ from mpm_verify.verify.terminal import checks
 def show(record: Record, page: Path | None) -> None:
     """Print the checks and what came out."""
     found = record.analysis.more.examinations
-    words = [f"{name.rstrip(': ')}: {lead(one)}" if len(found) > 1 else lead(one) for name, one in found.items()]
+    words = [f"{name}: {lead(one)}" if len(found) > 1 else lead(one) for name, one in found.items()]
     checks.show(record, page, "\n".join(words))
