@@ -10,10 +10,12 @@ HALF_THE_TIME_STEP = 4.49e-5  # on the finest cells
 
 
 def test_the_method_converges_as_registered(tmp_path: Path) -> None:
+    """A registered study, run in seconds."""
     done = mv.study("mms", method="cpdi", solution="axis_aligned", quick=True, out=tmp_path / "study")
     assert done.outcome == "PASS", done.verdicts
 
 
 def test_a_table_of_errors_has_order_two() -> None:
+    """Errors of another code, by the same rule."""
     found = mv.judge(CELLS, ERRORS, order=2, dt_halved=HALF_THE_TIME_STEP)
     assert found.passed, found.reason
