@@ -261,6 +261,7 @@ def test_python_blocks_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caps
     said = capsys.readouterr().out
     assert said.startswith("PASS 0\n")
     assert "mpm PASS does not converge, as expected" in said
+    assert "\nFAIL order 1.00" in said
     assert (tmp_path / "results/mine/report.html").is_file()
 
 
@@ -268,7 +269,7 @@ def test_the_example_of_a_test_is_one_that_can_fail(tmp_path: Path) -> None:
     file = DOCS / "examples" / "test_convergence.py"
     assert file.read_text() in blocks(DOCS / "api.md", "python")
     wrong = tmp_path / "test_wrong.py"
-    wrong.write_text(file.read_text().replace("4.498e-5]", "9e-5]").replace('method="cpdi"', 'method="gimp"'))
+    wrong.write_text(file.read_text().replace("4.498e-5]", "9e-5]").replace("quick=True", 'transfer="pic", quick=True'))
 
     def ended(test: Path) -> str:
         command = [sys.executable, "-m", "pytest", "-o", "addopts=", "-p", "no:cacheprovider", "-q", str(test)]
