@@ -12,7 +12,6 @@ from typing import Any
 
 import pytest
 from fixtures_tree import Tree, copied, forget
-from mpm_verify.cases.mms.sweep import build
 
 from mpm_verify.cases.column.run import ColumnRun
 from mpm_verify.cases.harness.build import Asked, build

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from mpm_verify.cases.mms.sweep import build
 
 from mpm_verify.cases.harness.build import Asked, build
 from mpm_verify.cases.harness.runner import Ticker

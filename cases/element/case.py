@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from mpm_verify.cases.element.exam import examination
-from mpm_verify.cases.element.execute import execute, test_of
+from mpm_verify.cases.element.execute import test_of
 from mpm_verify.cases.element.run import AXES, CONFINED, PATH, PROPERTIES, ElementResult, ElementRun
 from mpm_verify.cases.element.study import ElementStudy
 from mpm_verify.cases.harness.checks import Check, Examination, gathered
@@ -22,7 +22,7 @@ from mpm_verify.cases.harness.study import Study
 from mpm_verify.solver.plugins import MATERIALS, create, label
 from mpm_verify.solver.plugins import canonical as canonical_name
 
-__all__ = ["AXES", "Result", "Run", "canonical", "check", "examine", "execute", "title"]
+__all__ = ["AXES", "Result", "Run", "canonical", "check", "examine", "title"]
 
 Run, Result = ElementRun, ElementResult
 
@@ -67,12 +67,17 @@ def examine(study: Study[ElementRun], results: Mapping[str, ElementResult], stor
     for run in study.runs:
         if run.digest in results:
             groups.setdefault((run.material, run.stress, run.steps), []).append(results[run.digest])
-    several = len(groups) > 1
-    found = {}
-    for (material, stress, steps), mine in groups.items():
-        name = f"{label(material)}, {stress:g} Pa, {steps} steps" if several else label(material)
-        found[name] = _one(study, mine, store)
-    return ElementAnalysis(found)
+    return ElementAnalysis({named(key, list(groups)): _one(study, mine, store) for key, mine in groups.items()})
+
+
+def named(key: tuple[str, float, int], among: Sequence[tuple[str, float, int]]) -> str:
+    """Material, stress and steps of one among several, as far as they tell it apart: `ubcsand, 20 steps`."""
+    material, stress, steps = key
+    materials, stresses, counts = (len(set(values)) for values in zip(*among, strict=True))
+    distinct = len({label(one) for one, *_ in among}) == materials  # not of two files of one name
+    words = [label(material) if distinct else material] * (materials > 1)
+    words += [f"{stress:g} Pa"] * (stresses > 1) + [f"{steps} steps"] * (counts > 1)
+    return ", ".join(words) or label(material)
 
 
 def _one(study: Study[ElementRun], results: Sequence[ElementResult], store: Store) -> Examination:

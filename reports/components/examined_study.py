@@ -9,6 +9,7 @@ from mpm_verify.cases.harness.store import StoreError
 from mpm_verify.reports.components.examined import Section, Sections, render
 from mpm_verify.reports.components.page import Add
 from mpm_verify.reports.frames import Record
+from mpm_verify.reports.sentences.remarks import leads
 
 
 def page(record: Record, sections: Sections, kinds: Sequence[str] = ("svg", "pdf", "png")) -> Path:
@@ -16,13 +17,24 @@ def page(record: Record, sections: Sections, kinds: Sequence[str] = ("svg", "pdf
     found: Mapping[str, Examination] = record.analysis.more.examinations
     if not found:
         raise StoreError(f"{record.store.folder} holds no part that can be drawn: run its study to the end")
-    whole = replace(
-        next(iter(found.values())),
+    return render(
+        record.store.folder, whole(record, found), lambda _, add: every(found, sections, add), kinds,
+        said=" ".join(leads(found)),
+    )  # fmt: skip
+
+
+def whole(record: Record, found: Mapping[str, Examination]) -> Examination:
+    """All of them as one; parameters begin with the name of their Examination where there are several."""
+    first, several = next(iter(found.values())), len(found) > 1
+    named = [(f"{name}: " * several, one) for name, one in found.items()]
+    return replace(
+        first,
         title=record.study.title,
         checks=record.analysis.checks,
         findings=tuple(finding for one in found.values() for finding in one.findings),
+        parameters={before + key: value for before, one in named for key, value in one.parameters.items()},
+        origins={before + key: code for before, one in named for key, code in one.origins.items()},
     )
-    return render(record.store.folder, whole, lambda _, add: every(found, sections, add), kinds)
 
 
 def every(found: Mapping[str, Examination], sections: Sections, add: Add) -> Sequence[Section]:

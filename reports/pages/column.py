@@ -120,7 +120,7 @@ def budget(ran: Sequence[FinishedRun], labels: Sequence[str], add: Add) -> Secti
     for number, key in {0: "first", len(ran) - 1: "last"}.items():
         label = labels[number]
         image = add(f"budget_{key}", draw.budget(ran[number]), f"Layers of the energy budget over time, {label}.")
-        figures.append((image, f"{label[0].upper()}{label[1:]}. The line on top stays at 1 as the budget closes."))
+        figures.append((image, f"Run: {label}. The line on top stays at 1 as the budget closes."))
     return Section("budget", "Where the energy goes", figures=figures)
 
 
@@ -131,7 +131,7 @@ def energy(ran: Sequence[FinishedRun], labels: Sequence[str], add: Add) -> Secti
          f"The paper's Figure 6: {name} energy.")
         for name in ("potential", "kinetic")
     ]  # fmt: skip
-    columns = ("potential", "kinetic", "seen by the grid", "elastic", "plastic", "damping", "walls", "transfer",
+    columns = ("potential", "kinetic", "on the grid", "elastic", "plastic", "damping", "walls", "transfer",
                "convection", "residual")  # fmt: skip
     rows = []
     for one, label in zip(ran, labels, strict=True):
@@ -144,8 +144,8 @@ def energy(ran: Sequence[FinishedRun], labels: Sequence[str], add: Add) -> Secti
         "it is all that is left. Two columns are what the method loses: transfer, on the way of velocities between "
         "particles and grid, and convection, the work of the forces at the nodes less that of the stress in the "
         "particles. Each term is computed apart from the others; the residual is what their sum misses. Where the "
-        "gradients of weights jump, as those of classical MPM do, convection is no small share."
+        "gradients of weights jump, as those of classical MPM do, convection is no small fraction."
     )
     return Section("energy", "Energy", [text], figures, [
-        Table("Energies at the end, % of the initial potential energy; residual: its largest share at any time",
+        Table("Energies at the end, % of the initial potential energy; residual: its largest fraction at any time",
               ("run", *columns), tuple(rows))])  # fmt: skip

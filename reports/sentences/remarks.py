@@ -28,6 +28,12 @@ def lead(examination: Examination) -> str:
     return " ".join(sentence(remark) for remark in examination.findings if not remark.group)
 
 
+def leads(examinations: Mapping[str, Examination]) -> list[str]:
+    """What came out of each, with its name where there are several."""
+    several = len(examinations) > 1
+    return [f"{name}: {lead(one)}" if several else lead(one) for name, one in examinations.items()]
+
+
 def notes(examination: Examination, group: str) -> list[str]:
     """What one should know of a group, a paragraph each."""
     return [sentence(remark) for remark in examination.findings if remark.group == group]
