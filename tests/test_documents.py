@@ -16,7 +16,7 @@ import pytest
 from mpm_verify.cases.harness.shipped import shipped
 from mpm_verify.cases.harness.study_file import read
 from mpm_verify.cases.judging.records import ReasonCode
-from mpm_verify.cases.mms.case import execute
+from mpm_verify.cases.mms.execute import execute
 from mpm_verify.cases.mms.run import Run
 from mpm_verify.solver.failure import FailureKind
 from mpm_verify.solver.plugins import (
