@@ -195,8 +195,9 @@ class Estimate:
 
     def __str__(self) -> str:
         """One line."""
-        told = f"{self.runs} run{'s' * (self.runs != 1)} to be done, {self.stored} stored, up to {self.particles:,} particles"
-        return f"{told}, about {self.memory / 2**30:.1f} GB of memory and {duration(self.seconds)}"
+        told = f"{self.runs} run{'s' * (self.runs != 1)} to be done, {self.stored} stored"
+        needed = f"{self.memory / 2**30:.1f} GB of memory and {duration(self.seconds)}"
+        return f"{told}, up to {self.particles:,} particles, about {needed}"
 
 
 def estimate(study: "Study[Any]", store: Any, settings: Settings) -> Estimate:
