@@ -20,7 +20,7 @@ QUARTER = 0.25  # cells: of 4 particles in a cell, each is a quarter of a cell f
 
 
 class SpotCode(StrEnum):
-    """What a study of a solution may be blind to."""
+    """Codes of what a study of a solution may be blind to."""
 
     SHEAR = "shear"  # off-diagonal components of F
     ROTATION = "rotation"  # R of F = R U; F is its own transpose where R = I
@@ -37,7 +37,7 @@ class SpotCode(StrEnum):
     LOAD = "load"  # body force against inertia
     STRESS = "stress"  # divergence of the stress against body force and inertia
     PLANE = "plane"  # one-dimensional motion
-    ORDERS = "orders"  # what an order does not show, of any solution
+    ORDERS = "orders"  # what an observed order does not show, of any solution
     CONSTANTS = "constants"  # what leaves the order as it is, of any solution
 
 
@@ -51,7 +51,7 @@ class BlindSpot:
 
 
 ALWAYS = (BlindSpot(SpotCode.ORDERS, True), BlindSpot(SpotCode.CONSTANTS, True))
-SEEN_BY = {  # solutions of the library that do see it
+SEEN_BY = {  # solutions of the library that see what others are blind to
     SpotCode.SHEAR: ("clamped_shear", "generalised_vortex", "swirl"),
     SpotCode.ROTATION: ("clamped_shear", "generalised_vortex", "swirl"),
     SpotCode.ORDER: ("clamped_shear", "generalised_vortex", "swirl"),
@@ -106,7 +106,7 @@ RULES: dict[SpotCode, tuple[Callable[[Numbers], bool], tuple[str, ...]]] = {  # 
 
 
 def judge(measured: Numbers) -> tuple[BlindSpot, ...]:
-    """A BlindSpot a rule, in the order of the rules, and what holds for every solution last."""
+    """One BlindSpot for each rule, in the order of the rules, and what holds for every solution last."""
     known = {**measured, "finest": float(FINEST)}
     rules = (
         BlindSpot(code, blind(known), {name: known[name] for name in names}) for code, (blind, names) in RULES.items()

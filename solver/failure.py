@@ -27,7 +27,18 @@ class FailureKind(StrEnum):
 class Failure:
     """Why a run could not go on: a result, not a crash.
 
-    `step` is -1 where no step has to do with it, `particle` the index in the initial layout, -1 if none.
+    Parameters
+    ----------
+    kind
+        What happened.
+    step
+        Steps that were done; -1 where no step has to do with it.
+    particle
+        Index in the initial layout, -1 if none.
+    cell
+        Column and row of the particle's cell, None where there is none.
+    numbers
+        What FailureKind names in brackets.
     """
 
     kind: FailureKind
