@@ -60,7 +60,7 @@ def fill(x, F, l0, ox, oy, inv_dx, nx, ny, x0, x1, y0, y1, table, node):
 
 
 class Cpgimp(Basis):
-    """cpGIMP: sixteen support nodes, order 2 while the body neither turns nor shears.
+    """GIMP on stretched rectangles (cpGIMP): sixteen support nodes, order 2 while the body neither turns nor shears.
 
     References
     ----------
