@@ -11,10 +11,10 @@ from enum import StrEnum
 
 Numbers = dict[str, float]
 FAINT = 0.01  # fraction below which a term is not seen beside the others
-WEAK = 0.05  # of the force or the acceleration that matters most
+WEAK = 0.05  # fraction of the force or the acceleration that matters most
 SMALL = 1e-3  # strain below which second order in the strain is not seen in the error of a usual grid
 TURNED, CLEAR = 1.0, 15.0  # degrees: below the first nothing is seen, from the second on it is not weak
-ROUND = 1e-9  # of the largest value: above round-off
+ROUND = 1e-9  # fraction of the largest value: above round-off
 FINEST = 128  # cells of the finest usual grid
 QUARTER = 0.25  # cells: of 4 particles in a cell, each is a quarter of a cell from its face
 
@@ -24,12 +24,12 @@ class SpotCode(StrEnum):
 
     SHEAR = "shear"  # off-diagonal components of F
     ROTATION = "rotation"  # R of F = R U; F is its own transpose where R = I
-    ORDER = "order"  # of the factors in the update of F
+    ORDER = "order"  # order of the factors in the update of F
     SPIN = "spin"  # skew part of the velocity gradient L
     VOLUME = "volume"  # det F
     GRADIENT = "gradient"  # change of F over the body
     START = "start"  # acceleration at t = 0: what the half-step start corrects
-    VELOCITY = "velocity"  # at t = 0
+    VELOCITY = "velocity"  # velocity at t = 0
     MIRROR = "mirror"  # whether u_x(X, Y) = u_y(Y, X)
     AMPLITUDE = "amplitude"  # strain and stress
     CROSSING = "crossing"  # displacement in cells

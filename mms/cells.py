@@ -5,9 +5,9 @@ from itertools import pairwise
 from math import ceil, floor, log
 from typing import Any
 
-MOST = 64  # of the parts that the width may be cut into
-ROWS = 2  # of cells, at the least
-COARSER, FINER = 0.85, 4  # times the usual cells: with more a study takes another sort of time
+MOST = 64  # parts that the width may be cut into
+ROWS = 2  # rows of cells, at the least
+COARSER, FINER = 0.85, 4  # factors to the usual cells: with more a study takes another sort of time
 
 
 def ratio(solution: Any) -> Fraction | None:

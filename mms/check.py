@@ -14,7 +14,7 @@ from mpm_verify.solver.state import Floats
 
 POINTS, TIMES = 33, 33  # on a side and over the duration, for what has to be finite
 FINE = (49, 97, 97)  # times and positions that look for the least det F
-STARTS = 24  # of the search from there
+STARTS = 24  # samples from which the search for the least det F starts
 LEAST_DET = 1e-6
 
 SMOOTH = (sp.sin, sp.cos, sp.tan, sp.asin, sp.acos, sp.atan, sp.sinh, sp.cosh, sp.tanh, sp.exp, sp.log)

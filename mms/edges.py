@@ -15,9 +15,9 @@ from mpm_verify.mms.measure import CELLS, TIMES, Sampler, WaveMaterial, largest,
 from mpm_verify.solver.state import Floats
 
 SIDES = ("left", "right", "bottom", "top")  # side // 2 is the axis of the normal, side % 2 lower or upper
-POINTS = 65  # on a side
-ROUND = 1e-9  # of the largest displacement or stress: above round-off, below what could be meant
-ROUNDED = 5e-3  # of the same: 3.14 for pi misses by less
+POINTS = 65  # sampled on a side
+ROUND = 1e-9  # fraction of the largest displacement or stress: above round-off, below what could be meant
+ROUNDED = 5e-3  # fraction of the same: 3.14 for pi misses by less
 NEEDS = {
     "fixed": ("normal displacement", "tangential displacement"),
     "roller": ("normal displacement", "tangential traction"),

@@ -113,10 +113,10 @@ def measure(exact: Manufactured, solution: Any, material: WaveMaterial) -> dict[
     turned = np.arctan2(s.F[..., 1, 0] - s.F[..., 0, 1], s.F[..., 0, 0] + s.F[..., 1, 1])
     inertia, load = largest(s.acceleration), largest(s.b)
     numbers = {
-        "strain": largest(shift),  # of a component of F - I
+        "strain": largest(shift),  # largest component of F - I
         "shear": max(largest(s.F[..., 0, 1]), largest(s.F[..., 1, 0])),
-        "rotation_deg": float(np.degrees(np.abs(turned).max())),  # of R in F = R U
-        "spin": ratio(largest(L - L.swapaxes(-1, -2)), largest(L)),  # of the velocity gradient
+        "rotation_deg": float(np.degrees(np.abs(turned).max())),  # angle of R in F = R U
+        "spin": ratio(largest(L - L.swapaxes(-1, -2)), largest(L)),  # skew part of the velocity gradient
         "order": ratio(largest(s.F @ L - L @ s.F), largest(L)),  # whether F and L commute
         "J_min": float(s.J.min()),
         "J_max": float(s.J.max()),
@@ -129,7 +129,7 @@ def measure(exact: Manufactured, solution: Any, material: WaveMaterial) -> dict[
         "stress": largest(s.sigma) / (material.rho0 * material.wave_speed() ** 2),
         "weaker_component": ratio(min(largest(s.u[..., 0]), largest(s.u[..., 1])), largest(s.u)),
         "weaker_direction": ratio(min(largest(shift[..., :, 0]), largest(shift[..., :, 1])), largest(shift)),
-        "mirror": 1.0,  # how far u is from its mirror image in the diagonal
+        "mirror": 1.0,  # distance of u from its mirror image in the diagonal
     }
     if np.isclose(*extent):
         image = sampler(solution.lower + (layout.X - solution.lower)[:, ::-1], times).u[..., ::-1]

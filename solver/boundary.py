@@ -12,7 +12,7 @@ from mpm_verify.solver._jit import F1, F2, f8, flag, i8, kernel, nothing
 from mpm_verify.solver.state import Floats, Grid
 
 Kind = Literal["roller", "fixed", "free"]
-MASS_CUTOFF = 1e-12  # of a particle's mass: below it a node's velocity is 0/0
+MASS_CUTOFF = 1e-12  # fraction of a particle's mass: below it a node's velocity is 0/0
 
 
 @dataclass

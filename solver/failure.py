@@ -11,7 +11,7 @@ class FailureKind(StrEnum):
     DOMAIN_INVERTED = "domain_inverted"  # a domain with corners of its own is turned inside out
     OUTSIDE_GRID = "outside_grid"  # a particle, or a part of its domain
     DOMAIN_TOO_WIDE = "domain_too_wide"  # for the support nodes of its basis [width, limit, in cells]
-    NO_WIDTH = "no_width"  # of a domain
+    NO_WIDTH = "no_width"  # a domain of no width
     SLAB = "slab"  # a particle domain as wide as the grid
     NOT_FINITE = "not_finite"  # x, v, F or sigma of a particle
     ERROR_NOT_FINITE = "error_not_finite"  # an error norm

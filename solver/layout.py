@@ -9,7 +9,7 @@ from mpm_verify.solver.state import Floats, Ints
 
 Offset = tuple[float, float]
 CENTRED: Offset = (0.0, 0.0)
-SIDES = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])  # of the corners, counter-clockwise
+SIDES = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])  # corners by half sides, counter-clockwise
 
 
 @dataclass(frozen=True)

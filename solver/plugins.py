@@ -36,7 +36,7 @@ KINDS = {
     NEGATIVE_CONTROLS: "negative control",
     SMOOTHINGS: "smoothing",
 }
-USUAL_RATE = "green_naghdi"  # of a constitutive model in rate form
+USUAL_RATE = "green_naghdi"  # objective rate of a material in rate form that names none
 FILE = r"(.+?\.py)(?::(\w+=.*|[^/\\]*))?"  # a path and parameters
 CONTRACTS = {  # what the class of a kind has at least
     METHODS: ("support", "order", "fill"),

@@ -6,7 +6,7 @@ import numpy as np
 
 from mpm_verify.solver.state import Grid, Ints, Particles
 
-WIDTH = 8  # columns; leaves a particle with a reach of one column two columns to wander before the next sort
+SLAB_COLUMNS = 8  # leaves a particle with a reach of one column two columns to wander before the next sort
 
 
 @dataclass
@@ -23,7 +23,7 @@ class Slabs:
         See transfer.p2g, (S,).
     """
 
-    slab_columns: int = WIDTH
+    slab_columns: int = SLAB_COLUMNS
     start: Ints = field(default_factory=lambda: np.zeros(1, np.int64))
     strayed: Ints = field(default_factory=lambda: np.zeros(0, np.int64))
 

@@ -178,7 +178,7 @@ def fail_if_inverted(model: Model) -> None:
     if (model.inverted >= 0).any():
         lo = int(model.inverted[model.inverted >= 0][0])
         F = model.particles.F[lo : lo + BLOCK]
-        with np.errstate(all="ignore"):  # by the kernel's formula: det() rounds in another way
+        with np.errstate(all="ignore"):  # the kernel's formula: det() rounds in another way
             J = F[:, 0, 0] * F[:, 1, 1] - F[:, 0, 1] * F[:, 1, 0]
         fail(model, lo + int(np.flatnonzero(~((J > 0) & (J < np.inf)))[0]), FailureKind.INVERTED)
 

@@ -33,7 +33,7 @@ from mpm_verify.solver.state import Floats, Grid, Particles
 #         x   F  domain ox  oy 1/dx nx  ny  x0  x1  y0  y1 table node
 FILL = flag(F1, F1, F1, f8, f8, f8, i8, i8, f8, f8, f8, f8, F1, I1)
 Fill = function_type(FILL)
-Fault = tuple[FailureKind, dict[str, float]]  # and its numbers, see Failure
+Fault = tuple[FailureKind, dict[str, float]]  # kind and numbers, see Failure
 Position = Callable[[Floats], Floats]  # from reference positions (n,2) to positions (n,2)
 
 

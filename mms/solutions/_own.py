@@ -35,7 +35,7 @@ NEEDED, OPTIONAL = {"lower", "upper", "duration", "speed"}, {"material", "bounda
 KINDS = ("fixed", "roller", "free")
 HUGE = 1e30  # a larger number of domain() overflows on the way
 NOT_NUMBERS = (str, bytes, bool, np.bool_, complex, np.complexfloating, np.ndarray)  # though float() takes some of them
-ROOM = 0.25  # of the largest displacement: how much further than the exact one a free edge may move
+ROOM = 0.25  # fraction of the largest displacement by which a free edge may move further than the exact one
 
 
 class Own:

@@ -55,7 +55,7 @@ def returned(t1, t2, t3, f, constants):
         s1, s2, s3 = tension, q2, q3
     elif cut > 0.0 and q2 > tension and r3 >= low:  # edge of the cut-off, and its apex
         s1, s2, s3 = tension, tension, min(r3, tension)
-    else:  # edge of plane and cut-off: neither strains along 2; and its ends
+    else:  # edge of plane and cut-off: neither strains in direction 2; and its ends
         s2 = t2 - nu * (t1 + t3 - tension - low)
         s1, s2, s3 = tension, max(low, min(s2, tension)), low
     return s1, s2, s3

@@ -36,8 +36,8 @@ from mpm_verify.solver.voids import check_void, close_void
 
 PASSES = 3
 CLOSE = 0.8  # cosine between the axes of the middle and of the end; beyond it the return is radial
-NOISE = 1e-9  # of s: a shear stress below it is none, and cannot change its sign
-SETTLED = 1e-12  # of s: an elastic step need not be passed again
+NOISE = 1e-9  # fraction of s: a shear stress below it is none, and cannot change its sign
+SETTLED = 1e-12  # fraction of s: below it an elastic step need not be passed again
 MEMORY = ("eta_m", "gamma_p", "eps_v_p", "work_p", "reversals", "detached", "void")
 
 
@@ -98,7 +98,7 @@ def respond(constants, sigma, de, history):
                 onset_at = onset_at if crossed else onset(memory, half0, xy, start + shift, half, nxy, trial + shift)
                 x_on = half0 + onset_at * (half - half0)
                 y_on = xy + onset_at * (nxy - xy)
-                radius = nx * half + ny * nxy  # along the new axes; slip along those of the middle shortens it by G_n
+                radius = nx * half + ny * nxy  # on the new axes; slip on those of the middle shortens it by G_n
                 if not (nx * mx + ny * my > CLOSE and radius > memory * (trial + shift)):  # a first pass, a large step
                     nx, ny, mx, my, radius = half / t, nxy / t, half / t, nxy / t, t
                 D = eta_cv - eta_mid

@@ -23,7 +23,7 @@ from mpm_verify.solver.transfer import CHUNK, B
 from mpm_verify.solver.transfers._base import Gradient, Transfer
 from mpm_verify.solver.weights import Fill
 
-LEAST = 1e-12  # of D / h^2
+LEAST = 1e-12  # least diagonal entry of D / h^2
 
 
 @kernel(inline=True)
