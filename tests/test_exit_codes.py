@@ -266,7 +266,7 @@ def test_dry_run(verify: Call, idle: None, tmp_path: Path, name: str) -> None:
 
 LONG = ",".join(str(cells) for cells in range(2, 302))
 SQUARES = ",".join(str(side**2) for side in range(1, 301))
-HUNDRED = ",".join(f"flip:share={k / 100}" for k in range(1, 101))
+HUNDRED = ",".join(f"flip:fraction={k / 100}" for k in range(1, 101))
 TOML = f"""
 case = "column"
 [sweep]
