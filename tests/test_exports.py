@@ -235,7 +235,7 @@ def test_every_case_has_a_table_of_runs(case: str, tmp_path: Path) -> None:
     """No field of a run has the name of what is measured of it."""
     from mpm_verify.cases.harness.study import ResultRecord, Study
     from mpm_verify.reports.frames import Record
-    from mpm_verify.reports.tables.study import runs
+    from mpm_verify.reports.tables.mms import runs
 
     run = case_named(case).Run()
     result: ResultRecord[Any] = ResultRecord(run=run, digest=run.digest, status="finished", steps=7, particles=3)

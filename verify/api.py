@@ -178,9 +178,12 @@ class StoredStudy:
         dict of str to pandas.DataFrame
             By name: runs, and of refinements errors, orders, verdicts and more, with full digits.
         """
-        from mpm_verify.reports.tables.study import frames
+        from mpm_verify.reports.tables import plain
+        from mpm_verify.verify.run import of_case
 
-        return frames(self.record)
+        tables = of_case("reports.tables", self.record) or plain
+        made: dict[str, pd.DataFrame] = tables.frames(self.record)
+        return made
 
     def page(self) -> Path:
         """Draw the HTML page.

@@ -9,7 +9,7 @@ norms in norms.py.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -88,6 +88,15 @@ class Quantity:
         """Run to ask for when one more level would decide: the refinement goes on as it did last."""
         h = [level.h for level in self.ordered]
         return self.wanted(Action.ADD_LEVEL, h[-1] ** 2 / h[-2] if len(h) > 1 else h[-1] / 2)
+
+    @property
+    def enough(self) -> Wanted:
+        """Runs to ask for where there are fewer than LEVELS: as many as it takes, the refinement going on as it did."""
+        quantity, wanted = self, self.finer
+        while len(quantity.levels) + 1 < LEVELS:
+            quantity = replace(quantity, levels=[*quantity.levels, Level(wanted.h, ())])
+            wanted = quantity.finer
+        return wanted
 
     def wanted(self, action: Action, h: float) -> Wanted:
         """Run that would decide, and all the cells of the study then, whole multiples of `multiple`."""
@@ -203,7 +212,7 @@ def _gate(q: Quantity) -> Reason | None:
     """Reason why nothing can be judged yet, with the run that would decide; None if every gate is open."""
     fit, ended = q.fit, next((end for level in q.ordered if (end := level.ended)), None)
     if len(q.levels) < LEVELS:
-        return Reason(ReasonCode.TOO_FEW_LEVELS, {"levels": LEVELS}, wanted=q.finer)
+        return Reason(ReasonCode.TOO_FEW_LEVELS, {"levels": LEVELS}, wanted=q.enough)
     if ended:
         return Reason(ReasonCode.LEVEL_MISSING, failed=(ended,), wanted=q.wanted(Action.FINISH, ended.h))
     if fit.lowest <= CLEAR * q.floor:

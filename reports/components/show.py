@@ -12,7 +12,7 @@ from mpm_verify.reports import words
 from mpm_verify.reports.figures.local_orders import orders
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences import verdicts
-from mpm_verify.reports.tables import study as tables
+from mpm_verify.reports.tables import mms as tables
 
 NAMES = {"u": "displacement u", "v": "velocity v", "F": "deformation gradient F", "sigma": "Cauchy stress"}
 Row = tuple[str, ...]

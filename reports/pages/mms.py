@@ -22,7 +22,7 @@ from mpm_verify.reports.figures.particles import particles
 from mpm_verify.reports.figures.position import position
 from mpm_verify.reports.figures.time_step import time_step
 from mpm_verify.reports.frames import Record
-from mpm_verify.reports.tables import study as tables
+from mpm_verify.reports.tables import mms as tables
 from mpm_verify.reports.tables.cost import compares
 from mpm_verify.solver.plugins import label
 
