@@ -31,7 +31,8 @@ def tables(collapse: ColumnAnalysis, store: Store, folder: Path) -> None:
             rows.append(joined(head, parameters, measured(result.values)))
             columns = {name: values for name, values in read_curves(store, result).items() if values.ndim == 1}
             named = {axis: words.value(axis, getattr(run, axis)) for axis in collapse.study.axes}
-            curves.append(pd.DataFrame(joined({"digest": run.digest}, named, measured(columns))))
+            if columns:
+                curves.append(pd.DataFrame(joined({"digest": run.digest}, named, measured(columns))))
     pd.DataFrame(rows).to_csv(folder / "runs.csv", index=False)
     if curves:
         pd.concat(curves).to_csv(folder / "curves.csv", index=False, float_format="%.7g")
