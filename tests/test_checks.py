@@ -9,17 +9,27 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from mpm_verify.verify.examine import closest, conduct, document, sentence
+import typer
 
-from mpm_verify.cases.harness.checks import Check, Examination, Remark, load, save
-from mpm_verify.cases.harness.store import StoreError
+from mpm_verify.cases.element.case import ElementAnalysis
+from mpm_verify.cases.element.run import ElementResult, ElementRun
+from mpm_verify.cases.harness.analysis import Analysis
+from mpm_verify.cases.harness.build import Asked, build
+from mpm_verify.cases.harness.checks import Check, Examination, Remark
+from mpm_verify.cases.harness.store import Store, StoreError
+from mpm_verify.cases.harness.study import Study
 from mpm_verify.cases.judging.records import Outcome
 from mpm_verify.reports.components.examined import Section, checks_table, digits, render
 from mpm_verify.reports.components.page import Add
+from mpm_verify.reports.export.document import document
+from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences.remarks import notes
+from mpm_verify.solver.failure import Failure, FailureKind
 from mpm_verify.verify.main import main
+from mpm_verify.verify.run import Settings, conduct, more_of, usage
+from mpm_verify.verify.terminal.checks import closest, sentence
 
-CURVES = {"run/block of 1 m": {"t": np.linspace(0, 1, 5), "xx": np.arange(5.0)}, "exact": {"t": np.zeros(0)}}
+ARRAYS = {"run/block of 1 m/t": np.linspace(0, 1, 5), "run/block of 1 m/xx": np.arange(5.0), "exact/t": np.zeros(0)}
 FINDINGS = (
     Remark("objectivity.missed", {"missed": 2, "checks": 30}),
     Remark("element.against", {"source": "a sieve <&>"}),
@@ -29,12 +39,13 @@ FINDINGS = (
 GOOD = Check("turn", "stress", 1.001, 1.0, "relative", "closed form", 0.01)
 BAD = Check("turn", "shear stress", 0.2, 0.1, "at most", "symmetry")
 LOST = Check("shear", "order", nan, 2.0, "absolute", "leading term", 0.1)
+INVERTED = Failure(FailureKind.INVERTED, 3)
 
 
 def examination(*checks: Check, name: str = "objectivity") -> Examination:
     return Examination(
         name, "A turn", "verify objectivity", FINDINGS, checks, {"E [Pa]": 5e5, "rate": "jaumann"},
-        {"E [Pa]": "objectivity.paper"}, {"python": "3"}, CURVES,
+        {"E [Pa]": "objectivity.paper"}, {"python": "3"},
     )  # fmt: skip
 
 
@@ -77,105 +88,141 @@ def test_the_worst_check_is_the_outcome() -> None:
     assert examination().outcome is Outcome.INCONCLUSIVE
     assert examination(GOOD).outcome is Outcome.PASS
     assert examination(GOOD, BAD).outcome is Outcome.FAIL
-    assert examination(LOST, BAD, GOOD).outcome is Outcome.ERROR
+    assert examination(LOST, BAD, GOOD).outcome is Outcome.FAIL
+    assert examination(LOST, GOOD).outcome is Outcome.ERROR
     assert examination(LOST, BAD, GOOD).groups == ("shear", "turn", "words")
 
 
 # ---- the store
 
 
+def study_of_checks() -> Study[ElementRun]:
+    """A study of one run, whose Result holds whatever checks a test puts into it."""
+    asked = Asked("element", {"material": ["mohr_coulomb"], "test": ["properties"]})
+    return build(asked, "verify material mohr_coulomb --test properties", "checks", "A turn")
+
+
+def stored(folder: Path, *checks: Check) -> Study[ElementRun]:
+    """That study in a folder, its Result with these checks."""
+    study = study_of_checks()
+    (run,) = study.runs
+    store = Store(folder, "element")
+    store.create(study)
+    store.put(ElementResult(run=run, digest=run.digest, status="finished", checks=checks), ARRAYS)
+    return study
+
+
 def test_round_trip(tmp_path: Path) -> None:
     """Bit for bit, NaN and infinity included; a second time over the first."""
-    kept = examination(GOOD, BAD, replace(BAD, found=np.float64(1 / 3), expected=inf))
+    kept = (GOOD, BAD, replace(BAD, found=np.float64(1 / 3), expected=inf), replace(LOST, failure=INVERTED))
     for _ in range(2):
-        save(tmp_path / "a" / "b", kept)
-        read = load(tmp_path / "a" / "b")
-        assert read == kept
-        assert {name: list(curve) for name, curve in read.curves.items()} == {k: list(c) for k, c in CURVES.items()}
-        for name, curve in CURVES.items():
-            for column, values in curve.items():
-                np.testing.assert_array_equal(read.curves[name][column], values)
-    assert sorted(path.name for path in (tmp_path / "a" / "b").iterdir()) == ["curves.npz", "examination.json"]
-    save(tmp_path, examination(LOST))
-    assert np.isnan(load(tmp_path).checks[0].found)
-    assert load(tmp_path).outcome is Outcome.ERROR
+        (run,) = stored(tmp_path / "a" / "b", *kept).runs
+        store = Store(tmp_path / "a" / "b", "element")
+        read = store.get(run.digest).checks
+        assert read[:3] == kept[:3]
+        assert (np.isnan(read[3].found), replace(read[3], found=0.0)) == (True, replace(kept[3], found=0.0))
+        assert read[3].outcome is Outcome.ERROR
+        arrays = store.arrays(run.digest)
+        assert list(arrays) == list(ARRAYS)
+        for name, values in ARRAYS.items():
+            np.testing.assert_array_equal(arrays[name], values)
+    names = sorted(path.name for path in (tmp_path / "a" / "b").rglob("*"))
+    assert names == sorted([f"{run.digest}.json", f"{run.digest}.npz", "runs", "study.json"])
 
 
 BROKEN = {
-    "empty": ("examination.json", b""),
-    "cut off": ("examination.json", b'{"format": 2, "name": "objec'),
-    "no object": ("examination.json", b"[1]"),
-    "no text": ("examination.json", b"\xff\xfe\x00"),
-    "another format": ("examination.json", b'{"format": 99}'),
-    "a way that is none": ("examination.json", None),
-    "curves cut off": ("curves.npz", b"PK\x03\x04 and no more"),
-    "curves of something else": ("curves.npz", b"hello"),
+    "empty": ("json", b""),
+    "cut off": ("json", b'{"format": 2, "case": "elem'),
+    "no object": ("json", b"[1]"),
+    "no text": ("json", b"\xff\xfe\x00"),
+    "another format": ("json", b'{"format": 99}'),
+    "a way that is none": ("json", None),
+    "arrays cut off": ("npz", b"PK\x03\x04 and no more"),
+    "arrays of something else": ("npz", b"hello"),
+    "arrays empty": ("npz", b""),
 }
 
 
 @pytest.mark.parametrize("what", BROKEN)
 def test_a_broken_file_is_one_line_and_stays(what: str, tmp_path: Path) -> None:
-    save(tmp_path, examination(GOOD))
-    name, content = BROKEN[what]
-    whole = (tmp_path / "examination.json").read_bytes()
-    content = whole.replace(b'"relative"', b'"about"') if content is None else content
-    (tmp_path / name).write_bytes(content)
+    (run,) = stored(tmp_path, GOOD).runs
+    end, content = BROKEN[what]
+    file = tmp_path / "runs" / f"{run.digest}.{end}"
+    content = file.read_bytes().replace(b'"relative"', b'"about"') if content is None else content
+    file.write_bytes(content)
+    store = Store(tmp_path, "element")
     with pytest.raises(StoreError) as told:
-        load(tmp_path)
+        store.get(run.digest) if end == "json" else store.arrays(run.digest)
     assert "\n" not in str(told.value)
-    assert str(tmp_path) in str(told.value)
-    assert ("format 99" if what == "another format" else "left as they are") in str(told.value)
-    assert (tmp_path / name).read_bytes() == content
+    assert str(file) in str(told.value)
+    kinds = {"another format": "format 99", "json": "left as it is", "npz": "delete it and its .json file"}
+    assert kinds.get(what, kinds[end]) in str(told.value)
+    assert file.read_bytes() == content
 
 
-def test_empty_curves_are_one_line(tmp_path: Path) -> None:
-    save(tmp_path, examination(GOOD))
-    (tmp_path / "curves.npz").write_bytes(b"")
-    with pytest.raises(StoreError, match="left as they are"):
-        load(tmp_path)
-
-
-@pytest.mark.parametrize("name", ["examination.json", "curves.npz"])
+@pytest.mark.parametrize("name", ["study.json", "json", "npz"])
 def test_a_missing_file_is_named(name: str, tmp_path: Path) -> None:
-    save(tmp_path, examination(GOOD))
-    (tmp_path / name).unlink()
-    with pytest.raises(StoreError, match=f"holds no examination: {name} is missing"):
-        load(tmp_path)
+    """A Result that is not there is a run still to be done; arrays that are not there are named."""
+    (run,) = stored(tmp_path, GOOD).runs
+    store = Store(tmp_path, "element")
+    if name == "study.json":
+        (tmp_path / name).unlink()
+        with pytest.raises(StoreError, match=r"is no study folder: it holds no study\.json"):
+            store.study()
+        return
+    (tmp_path / "runs" / f"{run.digest}.{name}").unlink()
+    if name == "json":
+        assert store.get(run.digest) is None
+    else:
+        with pytest.raises(StoreError, match=rf"cannot read .*{run.digest}\.npz: .*No such file"):
+            store.arrays(run.digest)
 
 
 # ---- the command
 
 
-def drawn(folder: Path, found: Examination) -> Path:
+def drawn(folder: Path, *checks: Check) -> str:
     """A page of the words and the checks alone."""
 
     def sections(found: Examination, add: Add) -> list[Section]:
         return [Section("turn", "The turn", ("Words.",), (), [checks_table("turn", found.checks)])]
 
-    return render(folder, found, sections)
+    return render(folder, examination(*checks), sections).read_text()
 
 
-def run(tmp_path: Path, *checks: Check, as_json: bool = False, junit: Path | None = None) -> int:
-    return conduct(lambda: examination(*checks), drawn, tmp_path / "out", as_json, junit)
+def run(tmp_path: Path, *checks: Check, **settings: Any) -> int:
+    """Exit code of a study whose checks are these; what is stored is not computed again."""
+    return conduct(stored(tmp_path / "out", *checks), Settings(tmp_path / "out", **settings))
 
 
 @pytest.mark.parametrize(
-    ("checks", "code"),
-    [((GOOD,), 0), ((GOOD, BAD), 1), ((GOOD, LOST), 1), ((), 3)],
-    ids=["pass", "fail", "error", "none"],
+    ("checks", "code", "outcome"),
+    [
+        ((GOOD,), 0, "PASS"),
+        ((GOOD, BAD), 1, "FAIL"),
+        ((GOOD, LOST), 4, "ERROR"),
+        ((LOST, BAD, GOOD), 1, "FAIL"),
+        ((), 3, "INCONCLUSIVE"),
+    ],
+    ids=["pass", "fail", "error", "fail and error", "none"],
 )
 def test_exit_codes_and_what_is_printed(
-    checks: tuple[Check, ...], code: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    checks: tuple[Check, ...], code: int, outcome: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert run(tmp_path, *checks) == code
     out = capsys.readouterr().out
     words = " ".join(out.split())
     assert "A turn" in out
-    assert "2 of 30 checks did not pass; they stand first. Errors are against: a sieve <&>." in words
+    missed = sum(check is not GOOD for check in checks)
+    told = f"{missed} did not pass" if missed else "all pass"
+    assert (f"{len(checks)} checks: {told}." if checks else "nothing is judged.") in words
     assert out.rstrip().endswith("report.html")
     assert ("FAIL turn: shear stress is 0.2, expected at most 0.1 (symmetry)" in words) == (BAD in checks)
     assert ("ERROR shear: order is nan, expected 2 within 0.1 (leading term)" in words) == (LOST in checks)
-    assert (tmp_path / "out" / "tables" / "checks.csv").read_text().count("\n") == len(checks) + 1 or not checks
+    assert (tmp_path / "out" / "tables" / "checks.csv").exists() == bool(checks)
+    if checks:
+        assert (tmp_path / "out" / "tables" / "checks.csv").read_text().count("\n") == len(checks) + 1
+    assert f'<span class="badge {outcome}">' in (tmp_path / "out" / "report.html").read_text()
 
 
 def strict(constant: str) -> None:
@@ -185,49 +232,41 @@ def strict(constant: str) -> None:
 def test_json_has_no_nan_and_junit_every_check(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     junit = tmp_path / "new" / "checks.xml"
     infinite = replace(GOOD, name="lost", found=inf)
-    assert run(tmp_path, GOOD, BAD, LOST, infinite, as_json=True, junit=junit) == 1
+    assert run(tmp_path, GOOD, BAD, LOST, infinite, json_output=True, junit=junit, page=True) == 1
     told = json.loads(capsys.readouterr().out, parse_constant=strict)
-    assert (told["examination"], told["outcome"], told["version"]) == ("objectivity", "ERROR", 1)
+    assert (told["study"], told["case"], told["outcome"], told["version"]) == ("checks", "element", "FAIL", 3)
     assert [check["outcome"] for check in told["checks"]] == ["PASS", "FAIL", "ERROR", "ERROR"]
     assert [check["found"] for check in told["checks"]] == [1.001, 0.2, None, None]
     assert Path(told["report"]).exists()
     suite = ElementTree.parse(junit).getroot()
-    assert suite.attrib == {"name": "objectivity", "tests": "4", "errors": "2", "failures": "1"}
-    assert [case.attrib["classname"] for case in suite] == ["objectivity.turn"] * 2 + [
-        "objectivity.shear",
-        "objectivity.turn",
-    ]
+    assert suite.attrib == {"name": "checks", "tests": "4", "errors": "2", "failures": "1", "time": "0.000"}
+    assert [case.attrib["classname"] for case in suite] == ["checks.turn"] * 2 + ["checks.shear", "checks.turn"]
     assert [[child.tag for child in case] for case in suite] == [[], ["failure"], ["error"], ["error"]]
 
 
 def test_what_is_wrong_with_the_input_is_one_line(tmp_path: Path) -> None:
     """Before anything is computed."""
-    import typer
-
     with pytest.raises(typer.TyperException, match="cannot write --junit"):
-        conduct(lambda: pytest.fail("computed"), drawn, tmp_path, junit=tmp_path)
-
-    def refused() -> Examination:
+        conduct(study_of_checks(), Settings(tmp_path / "out", junit=tmp_path))
+    with pytest.raises(typer.TyperException, match="n must be above zero"), usage():
         raise ValueError("n must be above zero")
-
-    with pytest.raises(typer.TyperException, match="n must be above zero"):
-        conduct(refused, drawn, tmp_path)
     assert not list(tmp_path.iterdir())
 
 
 def test_the_page_names_what_missed_first(tmp_path: Path) -> None:
-    run(tmp_path, GOOD, BAD, LOST)
-    page = (tmp_path / "out" / "report.html").read_text()
+    page = drawn(tmp_path, GOOD, BAD, LOST)
     assert page.index("What missed") < page.index("The turn")
     assert "Errors are against: a sieve &lt;&amp;&gt;." in page
     assert "500000 (paper)" in page
-    run(tmp_path, GOOD)
-    assert "What missed" not in (tmp_path / "out" / "report.html").read_text()
+    assert '<span class="badge FAIL">' in page
+    assert "What missed" not in drawn(tmp_path, GOOD)
 
 
 def test_words_of_a_check() -> None:
     assert sentence(GOOD) == "stress is 1.001, expected 1 within 0.01 of it (closed form)"
     assert sentence(BAD) == "shear stress is 0.2, expected at most 0.1 (symmetry)"
+    lost = sentence(replace(LOST, failure=INVERTED))
+    assert lost == "order: det F \N{LESS-THAN OR EQUAL TO} 0 at step 3 is nan, expected 2 within 0.1 (leading term)"
     assert digits(-0.7568024953) == "\N{MINUS SIGN}0.7568025"
     assert digits(2.3e-10) == "2.3e-10"
 
@@ -258,8 +297,13 @@ def test_the_closest_call() -> None:
     assert closest([Check("turn", "none", 0.0, 0.0, "at most", "s")]) == ""
 
 
-def test_document_is_of_the_examination_alone(tmp_path: Path) -> None:
-    told = json.loads(document(examination(GOOD), tmp_path))
+def test_the_document_has_what_came_out(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of each examination: its lead, its findings as codes with numbers, its parameters with where they come from."""
+    study = stored(tmp_path, GOOD)
+    record = Record(Store(tmp_path, "element"), study, {}, earlier=False)
+    found = Analysis((), (GOOD,), ElementAnalysis({"soil": examination(GOOD)}))
+    monkeypatch.setattr(Record, "analysis", found)
+    told = json.loads(document(record, tmp_path, more_of(record)))["more"]["soil"]
     assert told["parameters"] == {"E [Pa]": "500000 (paper)", "rate": "jaumann"}
     assert told["findings"][0] == {"code": "objectivity.missed", "numbers": {"missed": 2, "checks": 30}, "group": ""}
     assert told["lead"] == "2 of 30 checks did not pass; they stand first. Errors are against: a sieve <&>."
@@ -282,43 +326,39 @@ def ask(words: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.Captur
     return (int(ended.value.code or 0), *capsys.readouterr())
 
 
-@pytest.mark.parametrize(
-    ("name", "module"), [("objectivity", "objectivity_page"), ("material-ubcsand", "material_page")]
-)
 def test_report_makes_the_page_of_an_examination_again(
-    name: str, module: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """By its name; what is stored is read, nothing runs."""
-    from types import ModuleType
-
-    asked: list[Examination] = []
-
-    def page(folder: Path, found: Examination) -> Path:
-        asked.append(found)
-        return drawn(folder, found)
-
-    fake = ModuleType(f"reports.{module}")
-    fake.page = page  # type: ignore[attr-defined]
-    monkeypatch.setitem(__import__("sys").modules, fake.__name__, fake)
-    save(tmp_path, examination(GOOD, name=name))
-    code, out, err = ask(["report", str(tmp_path)], monkeypatch, capsys)
-    assert (code, out, err) == (0, f"report: {tmp_path / 'report.html'}\n", "")
-    assert asked == [examination(GOOD, name=name)]
-
-
-def test_report_of_an_examination_that_cannot_be_drawn(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Of another kind, without its curves, or broken: one line."""
-    save(tmp_path, examination(GOOD, name="tea"))
+    """By the case of its study; what is stored is read, nothing runs."""
+    run(tmp_path, GOOD, BAD)
+    page = tmp_path / "out" / "report.html"
+    first = page.read_bytes()
+    page.unlink()
+    monkeypatch.setattr("mpm_verify.cases.element.execute.execute", lambda *_: pytest.fail("computed"))
+    capsys.readouterr()
+    code, out, err = ask(["report", str(tmp_path / "out")], monkeypatch, capsys)
+    assert (code, out, err) == (0, f"report: {page}\n", "")
+    assert page.read_bytes() == first
+    assert b"shear stress" in first
+
+
+def test_report_of_a_folder_that_cannot_be_drawn(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Of another case, without any run, or broken: one line."""
+    (run,) = stored(tmp_path, GOOD).runs
+    study = tmp_path / "study.json"
+    whole = study.read_bytes()
+    study.write_bytes(whole.replace(b'"case": "element"', b'"case": "tea"', 1))
     said = {"tea": ask(["report", str(tmp_path)], monkeypatch, capsys)}
-    save(tmp_path, examination(GOOD))
-    said["curves"] = ask(["report", str(tmp_path)], monkeypatch, capsys)
-    (tmp_path / "examination.json").write_text("{")
+    study.write_text("{")
     said["broken"] = ask(["report", str(tmp_path)], monkeypatch, capsys)
+    study.write_bytes(whole)
+    (tmp_path / "runs" / f"{run.digest}.json").unlink()
+    said["empty"] = ask(["report", str(tmp_path)], monkeypatch, capsys)
     for code, out, err in said.values():
         assert (code, out, err.count("\n")) == (2, "", 1)
         assert err.startswith("verify: ")
-    assert "must be of objectivity, material" in said["tea"][2]
-    assert "run it again" in said["curves"][2]
-    assert "left as they are" in said["broken"][2]
+    assert "is of the case tea, and this version has column, element" in said["tea"][2]
+    assert "run its study to the end" in said["empty"][2]
+    assert "left as it is" in said["broken"][2]

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mpm_verify.cases.column.case import Gate, execute, gravity, setup
+from mpm_verify.cases.column.execute import Gate, execute, gravity, setup
 from mpm_verify.cases.column.measure import Measure, connected, final, quantile, surface
 from mpm_verify.cases.column.run import ColumnRun
 from mpm_verify.cases.column.start import oedometric
@@ -59,7 +59,7 @@ def test_a_term_that_is_wrong_is_seen(name: str) -> None:
 
 
 def test_particles_that_gain_energy_are_seen() -> None:
-    """Velocities that grow by themselves are in no term, and a law that works too much is not in the forces."""
+    """Velocities that grow by themselves are in no term, and a material that works too much is not in the forces."""
     model, steps = setup(SMALL)
     measure = Measure(SMALL, model)
     measure.look(model)
@@ -110,13 +110,13 @@ def test_what_is_kept(done: Any) -> None:
 
 
 def test_density_and_modulus_scaled_together() -> None:
-    """Friction without cohesion has no stress of its own: the same places, to round-off, and scaled stresses."""
-    one, other = (went(replace(SMALL, law=f"mohr_coulomb:{p}"), 300) for p in ("E=840e3", "E=504e3,rho0=1590"))
+    """Friction without cohesion has no stress of its own: the same positions, to round-off, and scaled stresses."""
+    one, other = (went(replace(SMALL, material=f"mohr_coulomb:{p}"), 300) for p in ("E=840e3", "E=504e3,rho0=1590"))
     np.testing.assert_allclose(other.particles.x, one.particles.x, atol=1e-9)
     np.testing.assert_allclose(other.particles.sigma / 0.6, one.particles.sigma, atol=1e-4)
     moved = np.abs(one.particles.x - one.particles.X).max()
     assert moved > 1e-2
-    stiffer = went(replace(SMALL, law="mohr_coulomb:E=1680e3,rho0=2650", courant=0.4 * 2**0.5), 300)
+    stiffer = went(replace(SMALL, material="mohr_coulomb:E=1680e3,rho0=2650", courant=0.4 * 2**0.5), 300)
     assert np.abs(stiffer.particles.x - one.particles.x).max() > 1e-4  # E alone is not without effect
 
 
@@ -124,7 +124,7 @@ def test_density_and_modulus_scaled_together() -> None:
     "change",
     [
         {},
-        {"law": "ubcsand", "start": "oedometric"},
+        {"material": "ubcsand", "start": "oedometric"},
         {"smoothing": "deviatoric", "damping": 0.05},
         {"gate": 2.0, "left": "fixed"},
     ],
@@ -145,8 +145,8 @@ def test_a_mirrored_column_is_the_mirror_image(change: Any) -> None:
     [
         ({"method": "mpm"}, 0.9),
         ({"method": "gimp"}, 0.9),
-        ({"law": "drucker_prager"}, 0.9),
-        ({"law": "ubcsand", "start": "oedometric", "duration": 0.15}, 0.1),
+        ({"material": "drucker_prager"}, 0.9),
+        ({"material": "ubcsand", "start": "oedometric", "duration": 0.15}, 0.1),
         ({"start": "k0"}, 0.9),
         ({"damping": 0.05}, 0.9),
         ({"smoothing": "deviatoric", "left": "fixed"}, 0.9),
@@ -178,9 +178,9 @@ def test_a_smoothed_run_that_flies_apart_is_a_failed_run() -> None:
     result, _ = execute(replace(run, damping_kind="objective"))
     assert result.failure
     assert result.failure.kind is FailureKind.OUTSIDE_GRID
-    for lost in (np.nan, -1.0, 1e30):
+    for position in (np.nan, -1.0, 1e30):
         model, _ = setup(replace(SMALL, smoothing="volumetric"))
-        model.particles.x[5, 0] = lost
+        model.particles.x[5, 0] = position
         with pytest.raises(RunFailed, match=r"outside_grid|not_finite"):
             advance(model, gravity)
 
@@ -193,7 +193,7 @@ def test_undamped_runs_are_one_run() -> None:
 
 
 def test_without_what_keeps_it_alive() -> None:
-    """The plain scheme is lost; its failure is a result."""
+    """The plain scheme fails; its failure is a result."""
     result, _ = execute(replace(SMALL, limit=inf, void=False, deformation="linear", duration=0.6))
     assert result.status == "failed"
     assert result.failure
@@ -202,7 +202,7 @@ def test_without_what_keeps_it_alive() -> None:
 
 
 def test_the_stress_at_first() -> None:
-    """At rest: vertical stress of the weight above, K0 of Jaky; oedometric: admissible and of the law's own path."""
+    """At rest: vertical stress of the weight above, K0 of Jaky; oedometric: admissible, of the material's own path."""
     model, _ = setup(replace(SMALL, start="k0"))
     p = model.particles
     weight = 2650 * 10 * (SMALL.height - p.x[:, 1])
@@ -249,15 +249,15 @@ def test_measures_of_known_shapes() -> None:
         ({"cells": 2000}, "at most 1000"),
         ({"channel": 7.3}, "must make whole cells"),
         ({"g": 1e300}, "must be at most"),
-        ({"law": "mohr_coulomb:rho0=1e-300"}, "steps would be needed"),
+        ({"material": "mohr_coulomb:rho0=1e-300"}, "steps would be needed"),
         ({"duration": 0.0}, "must be above zero"),
         ({"aspect": 0.3}, "must make whole cells"),
         ({"start": "wet"}, "must be one of none, k0, oedometric"),
         ({"left": "rubber"}, "must be one of roller, fixed"),
-        ({"law": "neo_hookean"}, "must have a law in rate form"),
+        ({"material": "neo_hookean"}, "must have a material in rate form"),
         ({"smoothing": "rough"}, "no smoothing"),
         ({"limit": 0.0}, "must be above zero"),
-        ({"law": "hypoelastic", "start": "k0"}, "must have a law with an angle of friction"),
+        ({"material": "hypoelastic", "start": "k0"}, "must have a material with an angle of friction"),
         ({"damping": 1.5}, "must lie from 0"),
         ({"deformation": "cubic"}, "choose from linear, exponential"),
         ({"channel": 1.0}, "must be from 2 to 100"),

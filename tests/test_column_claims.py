@@ -85,17 +85,17 @@ def test_smoothing() -> None:
     assert [claim.reproduced for claim in both.values()] == [None]  # both are where the experiment is
 
 
-def test_law() -> None:
-    plain, sand = ran(0.84), ran(0.82, law="ubcsand")
+def test_materials() -> None:
+    plain, sand = ran(0.84), ran(0.82, material="ubcsand")
     early = np.where(T < 0.2, 0.05, 0.0)  # apart at first, as in the paper
     sand = replace(sand, curves=sand.curves | {"front_99": plain.curves["front_99"] - early})
-    assert [claim.reproduced for claim in said([plain, sand], "law").values()] == [True, True, True, None, True]
-    far = said([plain, ran(1.0, law="ubcsand:Rf=0.9")], "law")
+    assert [claim.reproduced for claim in said([plain, sand], "material").values()] == [True, True, True, None, True]
+    far = said([plain, ran(1.0, material="ubcsand:Rf=0.9")], "material")
     assert [claim.reproduced for claim in far.values()] == [False, False, False, None, False]
-    much = said([plain, ran(0.7, law="ubcsand")], "law")
+    much = said([plain, ran(0.7, material="ubcsand")], "material")
     assert much[ClaimCode.SAND_STIFFER].reproduced is False  # by a sixth
     assert "+19.0 %" in words.found(far[ClaimCode.MATERIALS_CLOSE])
-    assert not said([plain, ran(law="drucker_prager")], "law")
+    assert not said([plain, ran(material="drucker_prager")], "material")
 
 
 def test_families_differ_in_one_axis_alone() -> None:

@@ -3,16 +3,18 @@
 import json
 import sys
 from pathlib import Path
+from shutil import copytree
 from typing import Any
 from xml.etree import ElementTree
 
 import pytest
 
-from mpm_verify.cases.column.exam import ColumnRemark, look
+from mpm_verify.cases.column.claims import ClaimCode
+from mpm_verify.cases.column.exam import ColumnRemark, examine
 from mpm_verify.cases.column.run import ColumnRun
 from mpm_verify.cases.harness.checks import Remark
 from mpm_verify.cases.harness.store import Store
-from mpm_verify.reports.pages.column import read
+from mpm_verify.reports.frames import read
 from mpm_verify.reports.sentences.column import listed
 from mpm_verify.verify.main import main
 
@@ -64,21 +66,21 @@ def swept(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_a_column_from_release_to_rest(verify: Any) -> None:
     """Its numbers, the checks, a page with an animation, and files for ParaView."""
-    ended = verify("column", *SMALL, "--vtk", "--junit", "out.xml")
+    ended = verify("column", *SMALL, "--vtk", "--junit", "out.xml")  # snapshots are asked for, so there is a page
     assert (ended.code, ended.err) == (0, "")
     assert "1 of 1 runs came to their end. The front comes to" in ended.out
-    assert "report: results/column/report.html" in ended.out
-    text = Path("results/column/report.html").read_text()
+    assert "report: results/column-cells-2-ppc-4/report.html" in ended.out
+    text = Path("results/column-cells-2-ppc-4/report.html").read_text()
     assert text.count('class="film"') == 1
     assert "Collapse of a granular column" in text
-    store = Store(Path("results/column"), "column")
+    store = Store(Path("results/column-cells-2-ppc-4"), "column")
     (run,) = store.study().runs
     assert run == ColumnRun(cells=2, ppc=4)
-    names = sorted(file.name for file in Path("results/column/vtk").iterdir())
+    names = sorted(file.name for file in Path("results/column-cells-2-ppc-4/vtk").iterdir())
     assert len(names) == 2 * 8 + 2
     assert f"{run.digest}.pvd" in names
     assert len(ElementTree.parse("out.xml").getroot()) == 7
-    header = Path("results/column/tables/curves.csv").read_text().partition("\n")[0].split(",")
+    header = Path("results/column-cells-2-ppc-4/tables/curves.csv").read_text().partition("\n")[0].split(",")
     assert {"t", "front_99", "height", "kinetic", "plastic", "residual"} <= set(header)
 
 
@@ -86,9 +88,10 @@ def test_json(verify: Any) -> None:
     ended = verify("column", *SMALL, "--duration", "0.1", "--json")
     assert (ended.code, ended.err) == (1, "")  # it does not rest in a tenth of a second
     told = json.loads(ended.out)
-    assert (told["version"], told["study"], told["outcome"]) == (2, "column", "FAIL")
+    assert (told["version"], told["case"], told["outcome"]) == (3, "column", "FAIL")
+    assert told["study"] == "column-cells-2-ppc-4-duration-0.1"
     (one,) = told["runs"]
-    assert one["run"]["gate"] is None  # infinite
+    assert one["gate"] is None  # infinite
     assert one["values"]["rest"] is None
     assert one["values"]["front_99"] > 0.08
     assert any(check["outcome"] == "FAIL" and check["group"] == "Runs" for check in told["checks"])
@@ -96,7 +99,7 @@ def test_json(verify: Any) -> None:
 
 def test_what_a_sweep_says(swept: Path) -> None:
     """Every axis has its sentences and its refinement, in families."""
-    collapse, _ = read(swept)
+    collapse = read(swept).analysis.more
     assert len(collapse.ran) == 6
     assert {listed(claim.shared) for claim in collapse.claims} == {
         "no damping", "10 % damping", "4 per cell", "9 per cell", "16 per cell",
@@ -138,14 +141,39 @@ def test_what_is_missing_is_run(verify: Any, swept: Path) -> None:
     kept = (swept / "runs" / f"{run.digest}.json").read_text()
     others = {file: file.stat().st_mtime_ns for file in (swept / "runs").iterdir() if run.digest not in file.name}
     (swept / "runs" / f"{run.digest}.json").unlink()
-    assert len(look(store.study(), {}, store).ran) == 0
-    collapse, _ = read(swept)
+    assert len(examine(store.study(), {}, store).ran) == 0
+    collapse = read(swept).analysis.more
     assert Remark(ColumnRemark.TO_DO, {"runs": 1}) in collapse.examination.findings
     assert collapse.examination.outcome == "FAIL"  # the study declares that six come to their end
     assert verify("sweep", str(swept.parent / "small.toml"), "--out", str(swept)).code == 0
     again = json.loads((swept / "runs" / f"{run.digest}.json").read_text())
     assert again["values"] == json.loads(kept)["values"]
     assert {file: file.stat().st_mtime_ns for file in others} == others
+
+
+def test_curves_that_cannot_be_read_cost_figures_alone(verify: Any, swept: Path, tmp_path: Path) -> None:
+    """Checks and numbers stand, and the exit code; the file is named, its film is gone, the others' are there."""
+    folder = Path(copytree(swept, tmp_path / "out"))
+    whole = read(folder).analysis
+    digest = whole.more.study.runs[1].digest
+    file = folder / "runs" / f"{digest}.npz"
+    file.write_bytes(file.read_bytes()[:1000])
+    found = read(folder).analysis
+    assert found.checks == whole.checks
+    assert found.more.refined == whole.more.refined
+    gone = {claim.code for claim in whole.more.claims} - {claim.code for claim in found.more.claims}
+    assert gone <= {ClaimCode.POTENTIAL_KEPT, ClaimCode.KINETIC_CHANGED}
+    assert len(found.more.claims) == len(whole.more.claims) - 2  # those of the one family with that run
+    ended = verify("sweep", str(swept.parent / "small.toml"), "--out", str(folder), "--vtk")
+    assert (ended.code, ended.err) == (0, "")
+    line = f"The curves in runs/{file.name} cannot be read, and their figures are left out"
+    assert line in ended.out
+    text = (folder / "report.html").read_text()
+    assert line in text
+    assert text.count('class="film"') == 5
+    assert (folder / "tables" / "runs.csv").read_text().count("\n") == 7
+    assert digest not in (folder / "tables" / "curves.csv").read_text()
+    assert len(list((folder / "vtk").glob("*.pvd"))) == 2 * 5 or len(list((folder / "vtk").glob("*.pvd"))) == 5
 
 
 def test_a_failed_run_is_a_result(verify: Any, tmp_path: Path) -> None:
@@ -166,8 +194,8 @@ def test_a_failed_run_is_a_result(verify: Any, tmp_path: Path) -> None:
     [
         (["column", "--cells", "1"], "cells = 1 of the width must be 2 or more"),
         (["column", "--ppc", "3"], "3 particles per cell is no square number"),
-        (["column", "--law", "clay"], "no material 'clay'; choose from"),
-        (["column", "--law", "neo_hookean"], "must have a law in rate form"),
+        (["column", "--material", "clay"], "no material 'clay'; choose from"),
+        (["column", "--material", "neo_hookean"], "must have a material in rate form"),
         (["column", "--start", "wet"], "start = 'wet'"),
         (["column", "--offset", "0.1"], "--offset '0.1' must be two numbers"),
         (["column", "--offset", "0.1,0.9"], "must lie between -0.5 and 0.5"),
@@ -201,7 +229,7 @@ def test_a_store_that_cannot_be_read_stays(verify: Any, swept: Path, tmp_path: P
     assert result.read_text() == "{broken"
     ended = verify("mms", "--cells", "8", "--ppc", "1", "--out", str(swept))
     assert ended.code == 2
-    assert "holds another case than mms; use another --out folder" in ended.err
+    assert "holds the case column, not mms; use another --out folder" in ended.err
 
 
 def test_a_full_disk_is_one_line(verify: Any, monkeypatch: pytest.MonkeyPatch, swept: Path) -> None:

@@ -5,10 +5,10 @@ from math import inf
 from pathlib import Path
 
 import pytest
-from mpm_verify.cases.column.sweep import read
 
 from mpm_verify.cases.column.run import ColumnRun
 from mpm_verify.cases.harness.shipped import shipped
+from mpm_verify.cases.harness.study_file import read
 from mpm_verify.solver.source_hash import TOP
 
 FIGURES = {f"figure{number}" for number in range(3, 9)}
@@ -39,29 +39,34 @@ def own(folder: Path, text: str) -> str:
 
 
 def test_a_product_without_doubles(tmp_path: Path) -> None:
-    text = '[run]\nppc = 1\nlimit = inf\n[sweep]\ncells = [4, 7, 4]\noffset = [[0, 0], [0.1, 0.2]]\nlaw = ["ubcsand"]'
+    text = (
+        '[run]\nppc = 1\nlimit = inf\n[sweep]\ncells = [4, 7, 4]\noffset = [[0, 0], [0.1, 0.2]]\nmaterial = ["ubcsand"]'
+    )
     study = read(own(tmp_path, text), "verify sweep own.toml")
     assert [(run.cells, run.offset) for run in study.runs] == [
         (4, (0.0, 0.0)), (4, (0.1, 0.2)), (7, (0.0, 0.0)), (7, (0.1, 0.2)),
     ]  # fmt: skip
-    assert {(run.ppc, run.limit, run.law) for run in study.runs} == {(1, inf, "ubcsand")}
-    assert (study.name, study.title, study.axes, study.finish) == ("own", "own", ("cells", "offset", "law"), 4)
+    assert {(run.ppc, run.limit, run.material) for run in study.runs} == {(1, inf, "ubcsand")}
+    assert (study.name, study.title, study.axes, study.finish) == ("own", "own", ("cells", "offset"), 4)
 
 
 def test_the_study_in_readme(tmp_path: Path) -> None:
-    (text,) = re.findall(r"```toml\n(.*?)```", (TOP / "README.md").read_text(), re.DOTALL)
+    (text,) = re.findall(r"```toml\n(.*?)```", (TOP.parent / "README.md").read_text(), re.DOTALL)
     study = read(own(tmp_path, text), "")
     assert len(study.runs) == 6
-    assert {run.law for run in study.runs} == {"mohr_coulomb:phi=33"}
+    assert {run.material for run in study.runs} == {"mohr_coulomb:phi=33"}
 
 
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ("[run", "is no TOML"),
-        ("[runs]\nppc = 1", "the file has 'runs', and may have title, words, finish, run, sweep"),
-        ("[run]\nparticles = 1", r"\[run\] has 'particles', and may have method, cells"),
-        ("[sweep]\ncase = ['mms']", r"\[sweep\] has 'case'"),
+        ("[run", "cannot be read as TOML"),
+        (
+            "[runs]\nppc = 1",
+            "the file has 'runs', and may have case, title, words, finish, replicates, run, sweep, part",
+        ),
+        ("[run]\nparticles = 1", "column has no axis 'particles'; it has method, cells"),
+        ("[sweep]\ncase = ['mms']", "column has no axis 'case'"),
         ("run = 3", r"run must be a table, \[run\], not 3"),
         ("[sweep]\nppc = 4", "ppc in .sweep. must be a list of one value or more, not 4"),
         ("[sweep]\nppc = []", "must be a list of one value or more"),
@@ -76,21 +81,21 @@ def test_the_study_in_readme(tmp_path: Path) -> None:
         ("[run]\ncells = 100000", "at most 1000"),
         ("[run]\nchannel = 7.3", "channel = 7.3 must make whole cells"),
         ("[run]\ng = 1e300", "must be at most 1e4"),
-        ("[run]\nlaw = 'mohr_coulomb:rho0=1e-300'", "steps would be needed"),
-        ("title = 3", "title must be a sentence, not 3"),
+        ("[run]\nmaterial = 'mohr_coulomb:rho0=1e-300'", "steps would be needed"),
+        ("title = 3", "case and title must be text, not 'column' and 3"),
         ("finish = true", "finish = True must be a whole number"),
         ("[run]\nstart = 'wet'", "start = 'wet': input should be 'none', 'k0' or 'oedometric'"),
-        ("[run]\nlaw = 'clay'", "no material 'clay'; choose from"),
-        ("[run]\nlaw = 'neo_hookean'", "must have a law in rate form"),
+        ("[run]\nmaterial = 'clay'", "no material 'clay'; choose from"),
+        ("[run]\nmaterial = 'neo_hookean'", "must have a material in rate form"),
         ("[run]\ncells = 14\naspect = 6.5001", "must make whole cells"),
         ("[run]\noffset = [0.7, 0]", "must lie between -0.5 and 0.5"),
         ("[run]\ndamping = nan", "must lie from 0"),
         ("[run]\ncourant = inf", "must be above zero and finite"),
         ("[run]\nsmoothing = 'full:beta=1'", "must be below 1 with both parts"),
-        ("[run]\nlaw = 'truesdell'", "no material 'truesdell'"),
+        ("[run]\nmaterial = 'truesdell'", "no material 'truesdell'"),
         ("finish = 2", "finish = 2 must be a whole number from 0 to the 1 runs"),
         ("words = 'many'", "words must be a list of sentences"),
-        (f"[sweep]\ncells = {list(range(2, 45))}\nppc = {[k * k for k in range(1, 30)]}", "must make 1000 or fewer"),
+        (f"[sweep]\ncells = {list(range(2, 103))}\nppc = {[k * k for k in range(1, 101)]}", "10100 runs are asked for"),
     ],
 )
 def test_what_is_wrong_is_said(text: str, says: str, tmp_path: Path) -> None:
@@ -106,5 +111,5 @@ def test_no_such_study(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match=r"cannot read .*none\.toml: no such file"):
         read(str(tmp_path / "none.toml"), "")
     (tmp_path / "binary.toml").write_bytes(b"\xff\xfe")
-    with pytest.raises(ValueError, match="is no TOML"):
+    with pytest.raises(ValueError, match="cannot be read as TOML"):
         read(str(tmp_path / "binary.toml"), "")

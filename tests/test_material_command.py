@@ -9,13 +9,19 @@ from typing import Any
 import numpy as np
 import pytest
 
+from mpm_verify.cases.element.case import examine
 from mpm_verify.cases.element.checks import TABLE, law_checks, run
 from mpm_verify.cases.element.drawn import limit as limits
-from mpm_verify.cases.element.exam import ElementRemark, beyond, examine, notes, origins, parameters
+from mpm_verify.cases.element.exam import ElementRemark, beyond, notes, origins, parameters
+from mpm_verify.cases.element.execute import execute
 from mpm_verify.cases.element.paths import TESTS
+from mpm_verify.cases.element.run import PROPERTIES
 from mpm_verify.cases.element.study import study
+from mpm_verify.cases.harness.build import Asked, build
+from mpm_verify.cases.harness.checks import Examination
 from mpm_verify.cases.judging.records import Outcome
 from mpm_verify.reports.figures.element import stress
+from mpm_verify.reports.frames import read
 from mpm_verify.reports.sentences.remarks import lead, sentence
 from mpm_verify.reports.sentences.remarks import notes as told_notes
 from mpm_verify.reports.sentences.remarks import parameters as shown
@@ -24,7 +30,7 @@ from mpm_verify.solver.plugins import available, create
 from mpm_verify.verify.main import main
 
 LAWS = available("mpm_verify.solver.material")
-QUICK = [TESTS["isotropic"], TESTS["undrained"]]
+QUICK = ("isotropic", "undrained")
 
 
 def verify(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str, str]:
@@ -35,10 +41,32 @@ def verify(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], 
     return int(end.value.code or 0), said.out, said.err
 
 
+class Kept:
+    """A store in memory."""
+
+    def __init__(self) -> None:
+        self.results: dict[str, Any] = {}
+        self.kept: dict[str, Any] = {}
+
+    def arrays(self, digest: str) -> Any:
+        """Those of a run."""
+        return self.kept[digest]
+
+
+def examined(name: str, tests: tuple[str, ...], steps: int) -> Examination:
+    """Tests of a material, and what is known of it, run and judged as the command does."""
+    asked = Asked("element", {"material": [name], "test": [*tests, PROPERTIES], "steps": [steps]})
+    made, store = build(asked, ""), Kept()
+    for one in made.runs:
+        store.results[one.digest], store.kept[one.digest] = execute(one)
+    (found,) = examine(made, store.results, store).examinations.values()  # type: ignore[arg-type]
+    return found
+
+
 @pytest.mark.parametrize("name", LAWS)
 def test_every_law_passes_its_own_checks(name: str) -> None:
     """Whatever the law: its tables and limits, and two tests."""
-    found = examine(name, create("mpm_verify.solver.material", name), QUICK, 5e3, 20, "")
+    found = examined(name, QUICK, 20)
     assert found.checks
     missed = [check for check in found.checks if check.outcome is not Outcome.PASS]
     assert not missed
@@ -77,14 +105,14 @@ def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: py
     """Exit code, JSON, JUnit, page, and the page once more from what is stored."""
     out, junit = tmp_path / "out", tmp_path / "checks.xml"
     words = ("material", "mohr_coulomb", "--test", "biaxial", "--steps", "10", "--out", str(out))
-    code, said, err = verify(monkeypatch, capsys, *words, "--json", "--junit", str(junit))
+    code, said, err = verify(monkeypatch, capsys, *words, "--json", "--junit", str(junit), "--page")
     assert (code, err) == (0, "")
     told = json.loads(said)
     assert told["outcome"] == "PASS"
     assert {check["outcome"] for check in told["checks"]} == {"PASS"}
     assert "testcase" in junit.read_text()
-    stored = load(out)
-    assert stored.curves["test/biaxial"]["s"].shape == stored.curves["test/biaxial"]["ev"].shape
+    (stored,) = read(out).analysis.more.examinations.values()
+    assert stored.curves["test/biaxial"]["s"].shape == stored.curves["test/biaxial"]["ev"].shape == (161,)
     page = out / "report.html"
     first = page.read_bytes()
     assert b"Drained biaxial compression" in first
@@ -106,7 +134,8 @@ def test_a_path_of_ones_own_is_shown_and_not_judged(
         code, said, err = verify(monkeypatch, capsys, "material", law, *words[2:])
         assert (code, err) == (3, "")
         assert "nothing is judged" in " ".join(said.split())
-    curves = load(tmp_path / "out").curves["test/path"]
+    (stored,) = read(tmp_path / "out").analysis.more.examinations.values()
+    curves = stored.curves["test/path"]
     assert curves["tau"][-1] != 0
     assert np.isfinite(curves["s"]).all()
 
@@ -121,34 +150,38 @@ def test_what_was_read_and_what_has_no_effect_is_told(
     code, said, err = verify(monkeypatch, capsys, *words)
     assert (code, err) == (0, "")
     flat = " ".join(said.split())
-    notes = json.loads(verify(monkeypatch, capsys, *words, "--json")[1])["notes"]
+    (told,) = json.loads(verify(monkeypatch, capsys, *words, "--json")[1])["more"].values()
     page = (out / "report.html").read_text()
     for line in (
-        "rate=jaumann changes nothing here: along a path of strains the law works in its own frame",
+        "rate=jaumann changes nothing here: along a path of strains the material works in its own frame",
         "exx, eyy, gxy are read of mine.csv; the largest strain is 0.001 (0.1 %).",
         "ezz: zero in every row, as in plane strain",
-        "not used of mine.csv: time.",
+        "Not used of mine.csv: time.",
     ):
-        assert f"note: {line}" in flat
-        assert [note for note in notes if note.startswith(line)]
-        assert f"Note: {line}" in page
-    assert len(notes) == 4
-    code, said, err = verify(monkeypatch, capsys, "material", "hypoelastic", "--test", "isotropic", *words[4:])
-    assert "note:" not in said
+        assert line in flat
+        assert line in told["lead"]
+        assert line in page
+    codes = {ElementRemark.RATE_IDLE, ElementRemark.PATH_READ, ElementRemark.PATH_ZERO, ElementRemark.PATH_UNUSED}
+    assert [finding["code"] for finding in told["findings"] if finding["code"] in codes] == [
+        "element.rate_idle", "element.path_read", "element.path_zero", "element.path_unused",
+    ]  # fmt: skip
+    (told,) = json.loads(
+        verify(monkeypatch, capsys, "material", "hypoelastic", "--test", "isotropic", *words[4:], "--json")[1]
+    )["more"].values()
+    assert not codes & {finding["code"] for finding in told["findings"]}
 
 
 @pytest.mark.parametrize("name", ["mohr_coulomb", "drucker_prager"])
 def test_first_order_is_told_to_be_expected(name: str) -> None:
     """Where an order is told at all: of paths on which each step is exact there is none."""
-    law, tests = create("mpm_verify.solver.material", name), [TESTS["shear_stress"], TESTS["isotropic"]]
-    assert "First order is expected" in lead(examine(name, law, tests, 5e3, 10, ""))
-    flat = examine(name, law, tests[1:], 5e3, 10, "")
+    assert "First order is expected" in lead(examined(name, ("shear_stress", "isotropic"), 10))
+    flat = examined(name, ("isotropic",), 10)
     assert ElementRemark.FIRST_ORDER not in {finding.code for finding in flat.findings}
     assert "1 is exact" in lead(flat)
 
 
 def test_second_order_is_not_told_to_be_first() -> None:
-    found = examine("ubcsand", ubcsand.Ubcsand(), QUICK, 5e3, 10, "")
+    found = examined("ubcsand", QUICK, 10)
     assert {finding.code for finding in found.findings} >= {ElementRemark.TESTS, ElementRemark.ORDERS}
     assert ElementRemark.FIRST_ORDER not in {finding.code for finding in found.findings}
 
@@ -160,7 +193,7 @@ def test_the_limit_that_is_drawn_is_the_one_that_is_reached(name: str) -> None:
     limit = limits(law, 5e3)["limit/shear_stress"]["tau"]
     end = run(law, "shear_stress", 0.3, 5e3, 400).sigma[-1, 3]
     assert end == pytest.approx(limit[0], rel=1e-4)
-    drawn = examine(name, law, [TESTS["shear_stress"]], 5e3, 5, "").curves
+    drawn = examined(name, ("shear_stress",), 5).curves
     np.testing.assert_array_equal(drawn["limit/shear_stress"]["tau"], limit)
     figure = stress(drawn["test/shear_stress"], None, "gamma", "tau", (), limit[0])
     assert [line.get_label() for line in figure.axes[0].lines] == ["at failure (Davis)", "computed"]
@@ -211,8 +244,7 @@ def test_what_is_told_of_the_factors_is_so(reversal: float) -> None:
 
 def test_how_often_zz_is_out_of_range_is_told() -> None:
     """All of isotropic compression, where zz lags behind; none of shear at constant vertical stress; UBCSAND alone."""
-    law = ubcsand.Ubcsand()
-    found = examine("ubcsand", law, [TESTS["isotropic"], TESTS["shear_stress"]], 5e3, 10, "")
+    found = examined("ubcsand", ("isotropic", "shear_stress"), 10)
     assert "in 100 % of the steps" in told_notes(found, "Isotropic compression")[-1]
     assert "zz is within the range" in told_notes(found, "Simple shear at constant vertical stress")[-1]
     soil = create("mpm_verify.solver.material", "mohr_coulomb")
@@ -229,6 +261,53 @@ def test_the_share_counts_the_steps() -> None:
     assert " in 66.7 % of the steps" in sentence(notes(law, one)[-1])
 
 
+def test_curves_that_cannot_be_read_cost_figures_alone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Not a check, not an order, not the exit code; the file is named, and its figures are gone."""
+    words = ("material", "mohr_coulomb", "--test", "biaxial,shear_stress", "--steps", "10", "--out", str(tmp_path))
+    before = json.loads(verify(monkeypatch, capsys, *words, "--json", "--page")[1])
+    figures = (tmp_path / "report.html").read_text().count("<img")
+    run = next(run for run in before["runs"] if run["test"] == "shear_stress")
+    file = tmp_path / "runs" / f"{run['digest']}.npz"
+    file.write_bytes(file.read_bytes()[:1000])
+    code, said, err = verify(monkeypatch, capsys, *words)
+    assert (code, err) == (0, "")
+    line = f"The curves in runs/{file.name} cannot be read, and their figures are left out"
+    assert line in " ".join(said.split())
+    page = (tmp_path / "report.html").read_text()
+    assert line in page
+    assert page.count("<img") == figures - 3
+    after = json.loads(verify(monkeypatch, capsys, *words, "--json")[1])
+    assert after["checks"] == before["checks"]
+    (old,), (new,) = before["more"].values(), after["more"].values()
+    unread = {"code": "element.unread", "numbers": {"files": f"runs/{file.name}"}, "group": ""}
+    assert [finding for finding in new["findings"] if finding != unread] == old["findings"]
+    assert unread in new["findings"]
+
+
+def test_several_materials_and_paths_are_told_apart(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Checks, findings, figures and headings of each; two files of one name are two paths."""
+    for name, shear in (("a", "0.01"), ("b", "0.02")):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "mine.csv").write_text(f"exx,eyy,gxy\n0,0,0\n0,-0.001,{shear}\n")
+    paths = ",".join(str(tmp_path / name / "mine.csv") for name in "ab")
+    words = ("material", "neo_hookean", "hypoelastic", "--path", paths, "--steps", "4", "--out", str(tmp_path / "out"))
+    code, said, err = verify(monkeypatch, capsys, *words, "--json", "--page")
+    assert (code, err) == (0, "")
+    told = json.loads(said)
+    groups = {check["group"] for check in told["checks"]}
+    names = ("neo_hookean", "hypoelastic")
+    assert tuple(told["more"]) == names
+    tests = {f"{name}: Strain path of mine.csv ({number})" for name in names for number in (1, 2)}
+    assert tests <= groups
+    page = (tmp_path / "out" / "report.html").read_text()
+    assert all(f">{heading}</h2>" in page for heading in tests)
+    assert page.count("stress path.") == 4
+
+
 @pytest.mark.parametrize(
     ("words", "told"),
     [
@@ -238,10 +317,10 @@ def test_the_share_counts_the_steps() -> None:
         (["mohr_coulomb:E=-1"], "must be above zero"),
         (["mohr_coulomb:rate=spin"], "no rate 'spin'; choose from"),
         (["ubcsand", "--test", "triaxial"], "no test 'triaxial'; choose from isotropic"),
-        (["ubcsand", "--stress", "-5"], "--stress -5 must be above zero"),
-        (["ubcsand", "--stress", "nan"], "must be above zero and finite"),
-        (["neo_hookean", "--stress", "5"], "a law of F starts undeformed"),
-        (["ubcsand", "--steps", "0"], "--steps takes whole numbers from 1"),
+        (["ubcsand", "--stress", "-5"], "stress = -5 must be above zero and finite"),
+        (["ubcsand", "--stress", "nan"], "stress = nan must be above zero and finite"),
+        (["neo_hookean", "--stress", "5"], "a material with a stress from F starts undeformed"),
+        (["ubcsand", "--steps", "0"], "steps = 0 cannot be run; choose whole numbers from 1 to 10000"),
         (["ubcsand", "--path", "none.csv"], "none.csv: no such file"),
         (["ubcsand", "--path", "none.csv", "--units", "pct"], "--units pct must be one of percent, fraction"),
         (["ubcsand", "--units", "percent"], "--units belongs to --path FILE.csv"),

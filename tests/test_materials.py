@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from mpm_verify.cases.mms.sweep import Sweep
 
+from mpm_verify.cases.harness.build import Asked, build
 from mpm_verify.mms.manufacture import manufacture
 from mpm_verify.solver.elastic import Elastic
 from mpm_verify.solver.plugins import available, create, load
@@ -230,7 +230,7 @@ def test_no_solution_is_manufactured_without_an_energy(name: str) -> None:
     with pytest.raises(ValueError, match=f"^{name} has no energy.* must be one of {', '.join(ENERGETIC)}$"):
         manufacture(solution, law, law.rho0)
     with pytest.raises(ValueError, match=f"^{name} has no energy"):
-        Sweep(material=name).check()
+        build(Asked("mms", {"material": [name]}), "")
 
 
 WITHOUT = {
@@ -255,7 +255,8 @@ def test_commands_refuse_a_rate_that_is_none(
     command: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     line = complaint([*command, "--material", "hypoelastic:rate=spin"], monkeypatch, capsys, tmp_path)
-    assert line == f"verify: no rate 'spin'; choose from {', '.join(available('mpm_verify.solver.rates'))}\n"
+    known = ", ".join(available("mpm_verify.solver.rates"))
+    assert line == f"verify: no rate 'spin'; choose from {known}, or give a file: path/to/own.py\n"
 
 
 def test_commands_refuse_a_file_whose_own_law_has_none(

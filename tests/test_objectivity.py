@@ -3,23 +3,34 @@
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from shutil import copytree
+from tempfile import mkdtemp
 
 import numpy as np
 import pytest
 
-from mpm_verify.cases.harness.checks import Examination, load, save
-from mpm_verify.cases.harness.runner import InProcess
+from mpm_verify.cases.harness.analysis import analyse
+from mpm_verify.cases.harness.build import Asked, build
+from mpm_verify.cases.harness.checks import Examination
+from mpm_verify.cases.harness.store import Store
+from mpm_verify.cases.harness.study import Study
 from mpm_verify.cases.judging.records import Outcome
 from mpm_verify.cases.objectivity import block as objectivity_block
 from mpm_verify.cases.objectivity import rates as objectivity_kinematic
-from mpm_verify.cases.objectivity.block import PRINTED, REST, SMALL, blocks, misses
+from mpm_verify.cases.objectivity.axes import KINEMATIC, Block
+from mpm_verify.cases.objectivity.block import PRINTED, REST, SMALL, blocks, misses, numbers
 from mpm_verify.cases.objectivity.exact import SIMPLE_SHEAR, rotated
-from mpm_verify.cases.objectivity.exam import examine
-from mpm_verify.cases.objectivity.findings import CONTROLS, INERTIA, MODERATE, ObjectivityRemark, lead, of_runs
-from mpm_verify.cases.objectivity.turning_block import Block, turn
-from mpm_verify.reports.pages.objectivity import page
+from mpm_verify.cases.objectivity.exam import examination
+from mpm_verify.cases.objectivity.execute import ObjectivityResult, execute
+from mpm_verify.cases.objectivity.findings import INERTIA, MODERATE, ObjectivityRemark, lead, of_runs
+from mpm_verify.cases.objectivity.rates import CONTROLS
+from mpm_verify.cases.objectivity.turning_block import turn
+from mpm_verify.reports.frames import read
+from mpm_verify.reports.sentences import failures
 from mpm_verify.reports.sentences.remarks import notes, sentence
+from mpm_verify.solver.failure import Failure, FailureKind
 from mpm_verify.solver.plugins import NEGATIVE_CONTROLS, RATES, available
+from mpm_verify.verify.run import Settings, conduct, page_of
 
 COARSE = Block(cells=4)
 WRONG, RIGHT = available(NEGATIVE_CONTROLS), available(RATES)
@@ -27,13 +38,44 @@ UNSEEN = {"strain_start", "strain_end", "strain_fixed"}  # by Figure 2
 
 
 @cache
+def coarse_folder() -> Path:
+    """A stored study of four cells along the block; the small one is a block of a third, whose steps are a third.
+
+    So it is the arrays of that block that stand under the digest of the small one.
+    """
+    folder = Path(mkdtemp())
+    store, study = Store(folder, "objectivity"), build(Asked("objectivity", {"cells": [4]}), "verify objectivity")
+    store.create(study)
+    small = blocks(COARSE)[SMALL]
+    for run in study.runs:
+        result, arrays = execute(replace(run, L=COARSE.L / 3) if run == small else run)
+        store.put(replace(result, run=run, digest=run.digest), arrays)
+    return folder
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A copy of the stored study, to break."""
+    return Path(copytree(coarse_folder(), tmp_path / "out"))
+
+
+def of_folder(folder: Path) -> Examination:
+    """The one examination of a stored study."""
+    (found,) = read(folder).analysis.more.examinations.values()
+    assert isinstance(found, Examination)
+    return found
+
+
+@cache
 def coarse() -> Examination:
-    """Four cells along the block, and for the small one a block of a third, for which the steps are a third as long."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(
-            objectivity_block, "blocks", lambda block: {**blocks(block), SMALL: replace(block, L=block.L / 3)}
-        )
-        return examine(COARSE, InProcess(), "verify objectivity --cells 4")
+    """That of the coarse block."""
+    return of_folder(coarse_folder())
+
+
+def file_of(folder: Path, part: str) -> Path:
+    """Arrays of a part: of a block by its name, or of the kinematic part."""
+    named = {**blocks(COARSE), KINEMATIC: replace(COARSE, part=KINEMATIC)}
+    return folder / "runs" / f"{named[part].digest}.npz"
 
 
 # ---- the closed form
@@ -109,28 +151,35 @@ def test_the_runs_of_the_coarse_block() -> None:
         assert (miss > 0.25) == (rate in {"same_rotation", "printed", "printed_rotation", "stretched_frame"}), rate
 
 
-def test_a_run_that_ends_early_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_run_that_ends_early_is_an_error() -> None:
     """And its reason is the name of the check."""
-    empty = {
-        name: np.zeros(0) for name in ("t", "angle", "xx", "yy", "zz", "xy", "own_xx", "own_yy", "own_xy", "shear")
-    }
-    found = {name: ({"mean": empty, "field": {}}, "") for name in blocks(COARSE)}
-    found[SMALL] = ({"mean": empty, "field": {}}, "det F lost at t = 1.5")
-    (check,) = objectivity_block.checks(COARSE, found)
-    assert (check.outcome, check.name) == (Outcome.ERROR, f"{SMALL}: det F lost at t = 1.5")
+    study, results = read(coarse_folder()).study, read(coarse_folder()).results
+    named = {**blocks(COARSE), KINEMATIC: replace(COARSE, part=KINEMATIC)}
+    stored = {name: results[run.digest] for name, run in named.items()}
+    why = Failure(FailureKind.INVERTED, 7)
+    stored[SMALL] = replace(stored[SMALL], status="failed", failure=why, values={})
+    (check,) = objectivity_block.checks(COARSE, stored)
+    assert (check.outcome, check.name, check.failure) == (Outcome.ERROR, SMALL, why)
+    assert failures.check(check.name, check.failure) == f"{SMALL}: det F \N{LESS-THAN OR EQUAL TO} 0 at step 7"
+    found = examination(study, COARSE, stored, {})
+    assert found.outcome is Outcome.ERROR
+    codes = {finding.code for finding in found.findings}
+    assert ObjectivityRemark.MISSED in codes
+    assert ObjectivityRemark.SWAP not in codes
 
 
 def test_a_lead_counts_what_missed() -> None:
     checks = list(coarse().checks)
     passed = [check for check in checks if check.outcome is Outcome.PASS]
     curves = coarse().curves
-    turns = lead(COARSE, passed, curves, ["strain_end"])
+    small = numbers(COARSE, curves[f"run/{SMALL}"])
+    turns = lead(COARSE, passed, small, ["strain_end"])
     assert turns.code == ObjectivityRemark.TURNS
     assert f"reaches {curves[f'run/{SMALL}']['xy'].max():.3f} of the vertical stress" in sentence(turns)
     assert "the closed form has 0.286." in sentence(turns)
     assert f"All {len(WRONG)} negative controls are seen" in sentence(turns)
     failed = replace(passed[0], found=np.nan)
-    missed = lead(COARSE, [failed, *passed[1:]], curves, [])
+    missed = lead(COARSE, [failed, *passed[1:]], small, [])
     assert sentence(missed).startswith(f"1 of {len(passed)} checks did not pass")
 
 
@@ -172,14 +221,19 @@ def test_words_take_their_numbers_from_the_runs() -> None:
     """Other curves, other numbers."""
     t = np.linspace(0.02, 2, 100)
     own = np.where(t > 1, 0.03 * np.exp(-3 * (t - 1)), 0.0)
+    angle = np.pi / 2 * np.maximum(0, t - 1)
     curve = {
         "t": t,
-        "xy": 0.25 * np.sin(np.pi * np.maximum(0, t - 1)),
+        "angle": angle,
+        "xx": 0 * t,
+        "yy": 0 * t,
+        "xy": 0.25 * np.sin(2 * angle),
         "own_xy": own,
         "own_yy": 0 * t - 0.96,
         "shear": own,
     }
-    found = of_runs(COARSE, curve, curve, curve)
+    of_run = numbers(COARSE, curve)
+    found = of_runs(COARSE, of_run, of_run, of_run)
     first, inertia = (
         " ".join(sentence(one) for one in found if one.group == group) for group in (objectivity_block.GROUP, INERTIA)
     )
@@ -202,20 +256,76 @@ def test_simple_shear_as_the_words_say() -> None:
 # ---- stored, and drawn again
 
 
-@pytest.mark.slow
-def test_the_page_is_made_of_what_is_stored(tmp_path: Path) -> None:
-    save(tmp_path, coarse())
-    text = page(tmp_path, load(tmp_path)).read_text()
+def test_the_page_is_made_of_what_is_stored(folder: Path) -> None:
+    text = page_of(read(folder)).read_text()
     for part in ("Figure 2: a block is loaded", "Negative controls", "Orders in time", "Objective is not unique"):
         assert part in text
     for name in (*RIGHT, *WRONG):
         assert name.replace("_", " ") in text
-    assert len(list((tmp_path / "figures").glob("*.png"))) == text.count("<img") == 8
+    assert len(list((folder / "figures").glob("*.png"))) == text.count("<img") == 8
+
+
+@pytest.mark.parametrize(("part", "figures"), [(SMALL, 5), (REST, 6), (KINEMATIC, 4), ("printed", 8)])
+def test_curves_that_cannot_be_read_cost_figures_alone(
+    part: str, figures: int, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Not a check, not a word but those that say so, not the exit code."""
+    file = file_of(folder, part)
+    file.write_bytes(file.read_bytes()[:1000])
+    found, whole = of_folder(folder), coarse()
+    assert found.checks == whole.checks
+    assert found.findings[:-1] == whole.findings
+    told = found.findings[-1]
+    assert (told.code, told.numbers) == (ObjectivityRemark.UNREAD, {"files": f"runs/{file.name}"})
+    study = read(folder).study
+    assert conduct(study, Settings(folder)) == analyse_code(folder)
+    out = " ".join(capsys.readouterr().out.split())
+    assert f"The curves in runs/{file.name} cannot be read, and their figures are left out" in out
+    text = (folder / "report.html").read_text()
+    assert f"The curves in runs/{file.name} cannot be read" in text
+    assert text.count("<img") == figures
+
+
+def analyse_code(folder: Path) -> int:
+    """Exit code of the study whose arrays are all there."""
+    whole = read(coarse_folder())
+    return analyse(whole.study, whole.results, whole.store).exit_code
+
+
+def test_a_second_time_nothing_is_computed(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every part is a run of the store."""
+    study = read(folder).study
+    assert len(study.runs) == len(set(study.runs)) == 3 + len(WRONG) + 1
+    monkeypatch.setattr("mpm_verify.cases.objectivity.execute.execute", lambda *_: pytest.fail("computed"))
+    before = {file: file.stat().st_mtime_ns for file in (folder / "runs").iterdir()}
+    conduct(study, Settings(folder, page=False))
+    assert {file: file.stat().st_mtime_ns for file in (folder / "runs").iterdir()} == before
+
+
+def made(part: str, nu: float) -> Block:
+    """A block or the kinematic part of another material."""
+    return replace({**blocks(COARSE), KINEMATIC: replace(COARSE, part=KINEMATIC)}[part], nu=nu)
+
+
+def test_several_blocks_are_told_apart(folder: Path) -> None:
+    """By what they differ in, in checks and headings, whatever that is."""
+    study: Study[Block] = build(Asked("objectivity", {"cells": [4], "nu": [0.3, 0.2]}), "")
+    stored = read(folder).results
+    results: dict[str, ObjectivityResult] = dict(stored)
+    for part, run in {**blocks(COARSE), KINEMATIC: replace(COARSE, part=KINEMATIC)}.items():
+        other = made(part, 0.2)
+        results[other.digest] = replace(stored[run.digest], run=other, digest=other.digest)
+    found = analyse(study, results, Store(folder, "objectivity"))
+    assert list(found.more.examinations) == ["nu 0.3", "nu 0.2"]
+    half = len(found.checks) // 2
+    assert all(check.group.startswith("nu 0.3: ") for check in found.checks[:half])
+    assert all(check.group.startswith("nu 0.2: ") for check in found.checks[half:])
 
 
 @pytest.mark.slow
-def test_verify_objectivity_passes() -> None:
+def test_verify_objectivity_passes(tmp_path: Path) -> None:
     """As the command runs it, in this process: the block of a hundredth takes most of its time."""
-    found = examine(Block(), InProcess(), "verify objectivity")
-    missed = [check for check in found.checks if check.outcome is not Outcome.PASS]
+    study = build(Asked("objectivity", {}), "verify objectivity")
+    assert conduct(study, Settings(tmp_path, page=False, jobs=1)) == 0
+    missed = [check for check in of_folder(tmp_path).checks if check.outcome is not Outcome.PASS]
     assert not missed

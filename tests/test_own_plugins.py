@@ -4,12 +4,12 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from mpm_verify.cases.column.sweep import run_of
+from mpm_verify.cases.mms.sweep import Sweep, build
 
 from mpm_verify.cases.column.run import ColumnRun
-from mpm_verify.cases.column.sweep import run_of
 from mpm_verify.cases.harness.study import Run
 from mpm_verify.cases.mms.case import execute
-from mpm_verify.cases.mms.sweep import Sweep, build
 from mpm_verify.solver import plugins
 from mpm_verify.solver.plugins import (
     CASES,

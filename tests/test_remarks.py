@@ -16,7 +16,11 @@ from mpm_verify.cases.column.claims import SPEAK, ClaimCode, claims
 from mpm_verify.cases.column.exam import ColumnRemark
 from mpm_verify.cases.element.element import ElementFailure
 from mpm_verify.cases.element.exam import ElementRemark
-from mpm_verify.cases.harness.checks import Examination, load, save
+from mpm_verify.cases.harness.build import Asked, build
+from mpm_verify.cases.harness.checks import Examination, Remark
+from mpm_verify.cases.harness.store import Store
+from mpm_verify.cases.objectivity.axes import KINEMATIC, Block
+from mpm_verify.cases.objectivity.execute import ObjectivityResult
 from mpm_verify.cases.objectivity.findings import ObjectivityRemark
 from mpm_verify.cases.objectivity.rates import order_checks, order_errors
 from mpm_verify.mms.blind_spots import ALWAYS, RULES, SEEN_BY, BlindSpot, SpotCode, judge
@@ -24,6 +28,7 @@ from mpm_verify.reports.sentences import blind_spots, column, element, numbers, 
 from mpm_verify.verify.main import main
 
 MODULES = (blind_spots, column, element, numbers, objectivity, remarks)
+TIMES = ("command", "environment", "wall_s", "cpu_s", "peak_memory_mb")
 EVERY: dict[str, type] = {"column": ColumnRemark, "element": ElementRemark, "objectivity": ObjectivityRemark}
 
 
@@ -43,17 +48,15 @@ def mute(value: Any) -> Any:
 
 
 def digest(folder: Path) -> str:
-    """Hash of what is stored of runs and examinations: all but pages, figures, tables, times and the folder."""
+    """Hash of what is stored of a study and its runs: all but pages, figures, tables, times and the folder."""
     text = hashlib.sha256()
     for file in sorted(folder.rglob("*")):
-        if file.name == "examination.json":
+        if file.suffix == ".json":
             content = json.loads(file.read_text())
-            text.update(json.dumps({k: v for k, v in content.items() if k not in ("environment", "command")}).encode())
+            text.update(json.dumps({k: v for k, v in content.items() if k not in TIMES}).encode())
         elif file.suffix == ".npz":
             with np.load(file) as stored:
                 text.update(b"".join(name.encode() + stored[name].tobytes() for name in sorted(stored.files)))
-        elif file.name == "study.json" or file.parent.name == "runs":
-            text.update(file.name.encode())
     return text.hexdigest()
 
 
@@ -89,15 +92,19 @@ def test_no_claim_depends_on_words(monkeypatch: pytest.MonkeyPatch) -> None:
     assert {column.says(claim) for claim in usual} == {column.found(claim) for claim in usual} == {"x"}
 
 
-def test_an_examination_is_stored_without_words(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_checks_are_stored_without_words(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Checks, their outcomes and findings are read as they were; the page alone has words."""
-    kept = Examination("objectivity", "t", "c", (), tuple(order_checks({"jaumann": order_errors("jaumann")})))
-    save(tmp_path, kept)
+    kept = tuple(order_checks({"jaumann": order_errors("jaumann")}))
+    run = Block(part=KINEMATIC)
+    store = Store(tmp_path, "objectivity")
+    store.create(build(Asked("objectivity", {}), ""))
+    store.put(ObjectivityResult(run=run, digest=run.digest, status="finished", checks=kept), {})
     silence(monkeypatch)
-    assert load(tmp_path) == kept
-    assert (load(tmp_path).outcome, remarks.lead(kept)) == ("PASS", "x")
-    wrong = (replace(kept.checks[0], expected=1.0),)
-    assert replace(kept, checks=wrong).outcome == "FAIL"
+    assert store.get(run.digest).checks == kept
+    found = Examination("objectivity", "t", "c", (Remark("objectivity.increment"),), store.get(run.digest).checks)
+    assert (found.outcome, remarks.lead(found)) == ("PASS", "x")
+    wrong = (replace(kept[0], expected=1.0),)
+    assert replace(found, checks=wrong).outcome == "FAIL"
 
 
 # ---- every code has a sentence
@@ -115,7 +122,7 @@ def every_claim() -> list[Any]:
         "ppc": [ran(0.9, 0.08, ppc=1), ran(0.91, 0.15, ppc=4)],
         "damping": [ran(0.9), ran(0.84, damping=0.1)],
         "smoothing": [ran(0.9), ran(1.0, smoothing="volumetric"), ran(0.85, smoothing="deviatoric")],
-        "law": [ran(0.84), ran(0.82, law="ubcsand")],
+        "material": [ran(0.84), ran(0.82, material="ubcsand")],
     }
     assert set(families) == set(SPEAK)
     return [claim for axis, family in families.items() for claim in claims(family, [axis])]

@@ -16,6 +16,7 @@ import typer
 from mpm_verify.verify.exits import DEFECT, USAGE
 
 if TYPE_CHECKING:
+    from mpm_verify.cases.harness.build import Asked
     from mpm_verify.cases.harness.study import Study
     from mpm_verify.reports.frames import Record
 
@@ -23,8 +24,6 @@ SMALL = 4e7  # cost below which worker processes take longer to start than they 
 HOUR = 3600.0
 UPDATES = 3e6  # particle updates a second of one process, on the slow side
 PARTICLE, NODE, PROCESS = 500.0, 200.0, 3e8  # bytes: of a particle, of a node, of a process
-MOST_RUNS = 10_000
-
 NOT_REPEATED = ("--out", "--junit", "--json", "--jobs", "--threads", "--summary", "--page", "--no-page", "--yes",
                 "--dry-run", "--vtk", "--no-vtk")  # fmt: skip
 
@@ -39,7 +38,8 @@ class Settings:
     json_output: bool = False
     junit: Path | None = None
     summary: Path | None = None
-    page: bool | None = None  # None: unless JSON, JUnit or a summary are asked for
+    page: bool | None = None  # None: unless JSON or JUnit are asked for alone, or the study is a quick one
+    quick: bool = False
     vtk: bool = False
     dry_run: bool = False
     yes: bool = False
@@ -54,6 +54,11 @@ def usage() -> Iterator[None]:
 
     try:
         yield
+    except SystemExit as error:
+        raise typer.TyperException(
+            f"a file of yours ended the program, with {error.code!r}; a study ends with its own exit code; stored runs "
+            "are kept"
+        ) from error
     except RunnerError as error:
         raise Ended(str(error), DEFECT if error.defect else USAGE) from error
     except (ValueError, StoreError) as error:
@@ -81,14 +86,14 @@ def conduct(study: "Study[Any]", settings: Settings) -> int:
 
         check_count(settings.jobs, "--jobs")
         check_count(settings.threads, "--threads")
-        writable(settings.junit, "--junit")
-        writable(settings.summary, "--summary")
         store = Store(settings.folder, study.case)
         if settings.dry_run:
             return told_plan(study, store, settings)
+        affordable(study, store, settings)
+        writable(settings.junit, "--junit")
+        writable(settings.summary, "--summary")
         with store.locked():  # before study.json is written: whoever is refused leaves the other's study as it is
             store.create(study)
-            affordable(study, store, settings)
             results = compute(study, store, settings)
             record = Record(store, study, results, earlier=False)
             page = draw(record, settings)
@@ -101,7 +106,7 @@ def draw(record: "Record", settings: Settings) -> Path | None:
     """The page of the study; None where none is asked for."""
     wanted = settings.page
     if wanted is None:
-        wanted = not (settings.json_output or settings.junit)
+        wanted = settings.vtk or not (settings.json_output or settings.junit or settings.quick)
     return page_of(record, settings.vtk) if wanted else None
 
 
@@ -190,7 +195,7 @@ class Estimate:
 
     def __str__(self) -> str:
         """One line."""
-        told = f"{self.runs} runs to be done, {self.stored} stored, up to {self.particles:,} particles"
+        told = f"{self.runs} run{'s' * (self.runs != 1)} to be done, {self.stored} stored, up to {self.particles:,} particles"
         return f"{told}, about {self.memory / 2**30:.1f} GB of memory and {duration(self.seconds)}"
 
 
@@ -259,6 +264,15 @@ def command() -> str:
             kept.append(argument)
             skip = False
     return "verify " + shlex.join(kept)
+
+
+def study_of(asked: "Asked", out: Path | None) -> "tuple[Study[Any], Path]":
+    """The study that is asked for, and its folder."""
+    from mpm_verify.cases.harness.build import named
+    from mpm_verify.cases.harness.reuse import study
+
+    folder = out or Path("results") / named(asked)
+    return study(asked, command(), folder), folder
 
 
 def named(study: "Study[Any]", out: Path | None) -> Path:

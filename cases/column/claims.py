@@ -5,7 +5,7 @@ axis alone. What "little" and "close" mean is said here, since the paper gives n
 runs, or what is known of the experiment, cannot tell. The sentences are in reports/sentences/column.py.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from itertools import pairwise
@@ -40,7 +40,7 @@ class ClaimCode(StrEnum):
     VOLUMETRIC_FRONT = "volumetric_front"  # smoothing, Figure 7
     VOLUMETRIC_HEIGHT = "volumetric_height"
     DEVIATORIC_FRONT = "deviatoric_front"
-    MATERIALS_CLOSE = "materials_close"  # law, Figure 8
+    MATERIALS_CLOSE = "materials_close"  # material, Figure 8
     SAND_STIFFER = "sand_stiffer"
     BOTH_NEAR = "both_near"
     SAND_EARLY = "sand_early"
@@ -49,7 +49,7 @@ class ClaimCode(StrEnum):
 
 @dataclass(frozen=True)
 class FinishedRun:
-    """A run that came to its end, its numbers and its curves."""
+    """A run that came to its end, its numbers and its curves; without them where they cannot be read."""
 
     run: ColumnRun
     values: dict[str, float]
@@ -166,18 +166,23 @@ def of_damping(family: Sequence[FinishedRun], known: Experiment) -> list[Claim]:
     """Figures 5 and 6."""
     rising = sorted(family, key=lambda one: one.run.damping)
     first, last = rising[0], rising[-1]
+    closer = abs(beyond(last.front, known.front)) < abs(beyond(first.front, known.front))
+    ends = compared("damping", first, last)
+    found = [
+        Claim(ClaimCode.FRONT_FALLS, "damping", rises([-one.front for one in rising]), compared("damping", *rising),
+              known),
+        Claim(ClaimCode.FRONT_CLOSER, "damping", closer, ends, known),
+    ]  # fmt: skip
+    if not (first.curves and last.curves):
+        return found
     start = float(first.curves["potential"][0])
     potential, kinetic = (largest_change(first, last, name) for name in ("potential", "on_grid"))
     most = float(first.curves["on_grid"].max())
     least = float(last.curves["on_grid"].max())
-    closer = abs(beyond(last.front, known.front)) < abs(beyond(first.front, known.front))
-    ends = compared("damping", first, last)
     changes = {"potential": potential / start, "kinetic": kinetic / start, "little": LITTLE}
     marked = {"kinetic": kinetic / most, "fall": 1 - least / most, "marked": MARKED}
     return [
-        Claim(ClaimCode.FRONT_FALLS, "damping", rises([-one.front for one in rising]), compared("damping", *rising),
-              known),
-        Claim(ClaimCode.FRONT_CLOSER, "damping", closer, ends, known),
+        *found,
         Claim(ClaimCode.POTENTIAL_KEPT, "damping", potential <= LITTLE * start, ends, known, changes),
         Claim(ClaimCode.KINETIC_CHANGED, "damping", kinetic >= MARKED * most, ends, known, marked),
     ]  # fmt: skip
@@ -207,27 +212,32 @@ def of_smoothing(family: Sequence[FinishedRun], known: Experiment) -> list[Claim
     return found
 
 
-def of_law(family: Sequence[FinishedRun], known: Experiment) -> list[Claim]:
+def of_material(family: Sequence[FinishedRun], known: Experiment) -> list[Claim]:
     """Figure 8."""
     by = {one.run.material.partition(":")[0]: one for one in reversed(family)}
     if not {"mohr_coulomb", "ubcsand"} <= by.keys():
         return []
     plain, sand = by["mohr_coulomb"], by["ubcsand"]
     apart = sand.front / plain.front - 1
-    t, front = sand.curves["t"], sand.curves["front_99"]
-    difference = front - np.interp(t, plain.curves["t"], plain.curves["front_99"])
-    early = float(np.abs(difference[t <= EARLY]).max(initial=0.0))
-    late = abs(float(difference[-1]))
-    both = compared("law", sand, plain)
+    both = compared("material", sand, plain)
     near = all(abs(beyond(one.front, known.front)) <= NEAR for one in (plain, sand))
-    found: Mapping[ClaimCode, tuple[bool | None, dict[str, float]]] = {
+    found: dict[ClaimCode, tuple[bool | None, dict[str, float]]] = {
         ClaimCode.MATERIALS_CLOSE: (abs(apart) <= CLOSE, {"apart": apart, "close": CLOSE}),
         ClaimCode.SAND_STIFFER: (-CLOSE <= apart < 0, {"apart": apart}),
         ClaimCode.BOTH_NEAR: (near, {"near": NEAR}),
         ClaimCode.SAND_EARLY: (None, {"until": EARLY}),
-        ClaimCode.SAND_LATE: (late < early, {"until": EARLY, "early": early, "late": late}),
     }
-    return [Claim(code, "law", reproduced, both, known, numbers) for code, (reproduced, numbers) in found.items()]
+    if sand.curves and plain.curves:
+        early, late = apart_at(sand, plain)
+        found[ClaimCode.SAND_LATE] = (late < early, {"until": EARLY, "early": early, "late": late})
+    return [Claim(code, "material", reproduced, both, known, numbers) for code, (reproduced, numbers) in found.items()]
+
+
+def apart_at(sand: FinishedRun, plain: FinishedRun) -> tuple[float, float]:
+    """How far the fronts are apart: at most until EARLY, and at the end [m]."""
+    t, front = sand.curves["t"], sand.curves["front_99"]
+    difference = front - np.interp(t, plain.curves["t"], plain.curves["front_99"])
+    return float(np.abs(difference[t <= EARLY]).max(initial=0.0)), abs(float(difference[-1]))
 
 
 Speaker = Callable[[Sequence[FinishedRun], Experiment], list[Claim]]
@@ -235,5 +245,5 @@ SPEAK: dict[str, Speaker] = {
     "ppc": of_particles,
     "damping": of_damping,
     "smoothing": of_smoothing,
-    "material": of_law,
+    "material": of_material,
 }

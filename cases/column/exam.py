@@ -14,6 +14,7 @@ from mpm_verify.cases.column.refined import Refined, Scattered, refinements, sca
 from mpm_verify.cases.column.run import ColumnResult, ColumnStudy
 from mpm_verify.cases.harness.checks import Check, Examination, Remark
 from mpm_verify.cases.harness.store import Store, StoreError
+from mpm_verify.cases.harness.study import Arrays
 
 
 class ColumnRemark(StrEnum):
@@ -27,6 +28,7 @@ class ColumnRemark(StrEnum):
     CROWDED = "column.crowded"  # heaps too small for their material
     ALONE = "column.alone"  # numbers of the one run there is
     BANDS = "column.bands"  # what the experiment's bands are
+    UNREAD = "column.unread"  # files of curves that cannot be read
 
 
 @dataclass(frozen=True)
@@ -46,20 +48,16 @@ class ColumnAnalysis:
         """What decides the exit code."""
         return self.examination.checks
 
-    @property
-    def drawn(self) -> tuple[FinishedRun, ...]:
-        """Those that came to their end and whose curves can be read."""
-        return tuple(one for one in self.ran if one.curves)
-
 
 def examine(study: ColumnStudy, results: Mapping[str, ColumnResult], store: Store) -> ColumnAnalysis:
     """Judge what is stored."""
     ended = [(run, results[run.digest]) for run in study.runs if run.digest in results]
     ran = tuple(FinishedRun(run, one.values, curves(store, one)) for run, one in ended if one.status == "finished")
-    said = tuple(claims([one for one in ran if one.curves], study.axes))
+    said = tuple(claims(ran, study.axes))
+    unread = [f"runs/{one.digest}.npz" for _, one in ended if not curves(store, one)]
     first = next(iter(results.values()), None)
     examination = Examination(
-        f"column-{study.name}", study.title, study.command, tuple(findings(study, ran, said, len(ended))),
+        f"column-{study.name}", study.title, study.command, tuple(findings(study, ran, said, len(ended), unread)),
         tuple(checks(study, ran)), parameters(study, first), {}, first.environment if first else {},
     )  # fmt: skip
     refined, scattered = tuple(refinements(ran, study.axes)), tuple(scatter(ran, study.axes))
@@ -68,14 +66,21 @@ def examine(study: ColumnStudy, results: Mapping[str, ColumnResult], store: Stor
 
 def curves(store: Store, result: ColumnResult) -> dict[str, Any]:
     """Columns over time, by name; none where they cannot be read."""
+    found = arrays(store, result)
+    return {name[6:]: np.asarray(values, float) for name, values in found.items() if name.startswith("curve_")}
+
+
+def arrays(store: Store, result: ColumnResult) -> Arrays:
+    """All that is stored beside the numbers of a run; nothing where it cannot be read, which decides nothing."""
     try:
-        arrays = store.arrays(result.digest)
+        return store.arrays(result.digest)
     except StoreError:
         return {}
-    return {name[6:]: np.asarray(values, float) for name, values in arrays.items() if name.startswith("curve_")}
 
 
-def findings(study: ColumnStudy, ran: Sequence[FinishedRun], said: Sequence[Claim], done: int) -> list[Remark]:
+def findings(
+    study: ColumnStudy, ran: Sequence[FinishedRun], said: Sequence[Claim], done: int, unread: Sequence[str]
+) -> list[Remark]:
     """What came out."""
     found = [Remark(ColumnRemark.FINISHED, {"finished": len(ran), "runs": len(study.runs)})]
     if done - len(ran):
@@ -94,7 +99,9 @@ def findings(study: ColumnStudy, ran: Sequence[FinishedRun], said: Sequence[Clai
     if len(ran) == 1:
         v = ran[0].values
         found.append(Remark(ColumnRemark.ALONE, {"front": ran[0].front, "height": ran[0].height, "lost": v["lost"]}))
-    return [*found, Remark(ColumnRemark.BANDS)] if any(experiment(one.run) for one in ran) else found
+    if any(experiment(one.run) for one in ran):
+        found.append(Remark(ColumnRemark.BANDS))
+    return [*found, Remark(ColumnRemark.UNREAD, {"files": ", ".join(unread)})] if unread else found
 
 
 def parameters(study: ColumnStudy, first: ColumnResult | None) -> dict[str, float | str]:

@@ -12,7 +12,6 @@ Wall = Literal["roller", "fixed"]
 MOST = 1000  # cells: 4 GB of grid
 STRIPS = 7  # of the width
 AT_REST = 1e-4  # kinetic energy of the grid, of the potential energy at first: a run below it rests
-PLUGINS = {"method": METHODS, "law": MATERIALS, "transfer": TRANSFERS, "smoothing": SMOOTHINGS}
 
 
 @dataclass(frozen=True)
@@ -33,10 +32,12 @@ class ColumnRun(RunRecord):
     ppc: int = axis(9, "Particles per cell, square numbers.")
     material: str = axis("mohr_coulomb", "Constitutive model in rate form.", MATERIALS)
     damping: float = axis(0.0, "Fraction of the unbalanced force at each node, 0.05 for 5 %.")
-    damping_kind: str = axis("local", "local (component by component) or objective.")
+    damping_kind: str = axis("local", "local (component by component) or objective.", choices=("local", "objective"))
     smoothing: str = axis("none", "none, or smoothing of rates and stresses.", SMOOTHINGS)
     transfer: str = axis("flip", "Transfer between particles and grid.", TRANSFERS)
-    deformation: str = axis("exponential", "Update of F: exponential, or linear as printed.")
+    deformation: str = axis(
+        "exponential", "Update of F: exponential, or linear as printed.", choices=("exponential", "linear")
+    )
     limit: float = axis(0.5, "Longest half diagonal of a CPDI domain, in cells; inf for none.")
     void: bool = axis(True, "Void-strain memory of the constitutive model.")
     courant: float = axis(0.4, "dt c / dx, c the compression wave of the constitutive model.")

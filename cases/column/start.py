@@ -22,7 +22,7 @@ def stress(particles: Particles, material: Material, start: str, surface: float,
     load = material.rho0 * g * (surface - particles.x[:, 1])
     if start == "k0":
         if material.friction_angle is None:
-            raise ValueError("start = k0 must have a law with an angle of friction")
+            raise ValueError("start = k0 must have a material with an angle of friction")
         K0 = 1 - sin(radians(material.friction_angle))
         particles.sigma[:, :3] = -load[:, None] * [K0, 1.0, K0]
         return

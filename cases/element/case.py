@@ -6,23 +6,23 @@ The contract of a case is told in cases/harness/contract.py.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from mpm_verify.cases.element.exam import examination
-from mpm_verify.cases.element.execute import execute, test_of
-from mpm_verify.cases.element.run import AXES, CONFINED, PROPERTIES, ElementResult, ElementRun
+from mpm_verify.cases.element.execute import test_of
+from mpm_verify.cases.element.run import AXES, CONFINED, PATH, PROPERTIES, ElementResult, ElementRun
 from mpm_verify.cases.element.study import ElementStudy
-from mpm_verify.cases.harness.checks import Check, Examination
+from mpm_verify.cases.harness.checks import Check, Examination, gathered
 from mpm_verify.cases.harness.store import Store, StoreError
 from mpm_verify.cases.harness.study import Study
 from mpm_verify.solver.plugins import MATERIALS, create, label
 from mpm_verify.solver.plugins import canonical as canonical_name
 
-__all__ = ["AXES", "Result", "Run", "canonical", "check", "examine", "execute", "title"]
+__all__ = ["AXES", "Result", "Run", "canonical", "check", "examine", "title"]
 
 Run, Result = ElementRun, ElementResult
 
@@ -35,8 +35,8 @@ class ElementAnalysis:
 
     @property
     def checks(self) -> tuple[Check, ...]:
-        """Those of all, named by what tells them apart where there are several."""
-        return tuple(check for one in self.examinations.values() for check in one.checks)
+        """Those of all."""
+        return gathered(self.examinations)
 
 
 def title(runs: Sequence[ElementRun]) -> str:
@@ -67,25 +67,48 @@ def examine(study: Study[ElementRun], results: Mapping[str, ElementResult], stor
     for run in study.runs:
         if run.digest in results:
             groups.setdefault((run.material, run.stress, run.steps), []).append(results[run.digest])
-    several = len(groups) > 1
-    found = {}
-    for (material, stress, steps), mine in groups.items():
-        name = f"{label(material)}, {stress:g} Pa, {steps} steps" if several else label(material)
-        found[name] = _one(study, mine, store, several * f"{name}: ")
-    return ElementAnalysis(found)
+    return ElementAnalysis({named(key, list(groups)): _one(study, mine, store) for key, mine in groups.items()})
 
 
-def _one(study: Study[ElementRun], results: Sequence[ElementResult], store: Store, before: str) -> Examination:
+def named(key: tuple[str, float, int], among: Sequence[tuple[str, float, int]]) -> str:
+    """Material, stress and steps of one among several, as far as they tell it apart: `ubcsand, 20 steps`."""
+    material, stress, steps = key
+    materials, stresses, counts = (len(set(values)) for values in zip(*among, strict=True))
+    distinct = len({label(one) for one, *_ in among}) == materials  # not of two files of one name
+    words = [label(material) if distinct else material] * (materials > 1)
+    words += [f"{stress:g} Pa"] * (stresses > 1) + [f"{steps} steps"] * (counts > 1)
+    return ", ".join(words) or label(material)
+
+
+def _one(study: Study[ElementRun], results: Sequence[ElementResult], store: Store) -> Examination:
     """The Examination of results that share their material."""
-    run = results[0].run
-    tests = [read(result, store) for result in results if result.run.test != PROPERTIES]
-    known = tuple(check for result in results for check in result.checks)
+    run, tests, unread = results[0].run, [], []
+    for result in results:
+        if result.run.test != PROPERTIES:
+            tests.append(read(result, store))
+            unread += [] if tests[-1].curve else [f"runs/{result.digest}.npz"]
+    known = [check for result in results for check in result.checks]
     reads = [result.read for result in results if result.read]
-    return examination(study, run, create(MATERIALS, run.material), tests, known, reads, results[0].environment, before)
+    model = create(MATERIALS, run.material)
+    return examination(study, run, model, told_apart(tests), known, reads, unread, results[0].environment)
+
+
+def told_apart(tests: Sequence[ElementStudy]) -> list[ElementStudy]:
+    """The tests; where there are several paths of files, with a number each."""
+    paths = [one for one in tests if one.test.name == PATH]
+    if len(paths) < 2:
+        return list(tests)
+    numbers = {id(one): number for number, one in enumerate(paths, 1)}
+    return [
+        replace(one, test=replace(one.test, name=f"{PATH}_{number}", title=f"{one.test.title} ({number})"))
+        if (number := numbers.get(id(one)))
+        else one
+        for one in tests
+    ]
 
 
 def read(result: ElementResult, store: Store) -> ElementStudy:
-    """A stored test; without curves where they cannot be read, for its errors stand in the Result."""
+    """A stored test; without its curves where they cannot be read, which decide nothing."""
     try:
         arrays = store.arrays(result.digest)
     except StoreError:

@@ -26,7 +26,9 @@ def drawn(law: Any, studies: list[ElementStudy], stress: float) -> Curves:
 
 
 def curves(studies: list[ElementStudy]) -> Curves:
-    """`test/NAME` and `exact/NAME` columns, `errors/NAME`: steps, error; `kind/NAME`: what its axes are."""
+    """`test/NAME` and `exact/NAME` columns where they are known, `errors/NAME`: steps, error; `kind/NAME`: its
+    axes.
+    """
     kept: Curves = {}
     for one in studies:
         if one.curve:

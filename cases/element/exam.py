@@ -1,7 +1,7 @@
 """`verify material`: element tests of one material as an Examination, with errors and orders in the strain step."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from enum import StrEnum
 from typing import Any
 
@@ -45,6 +45,7 @@ class ElementRemark(StrEnum):
     PATH_READ = "element.path_read"  # columns of a file
     PATH_ZERO = "element.path_zero"  # in every row, as in plane strain
     PATH_UNUSED = "element.path_unused"
+    UNREAD = "element.unread"  # files of curves that cannot be read
 
 
 def checks(law: Any, studied: ElementStudy) -> list[Check]:
@@ -70,16 +71,17 @@ def examination(
     studies: Sequence[ElementStudy],
     known: Sequence[Check],
     reads: Sequence[PathSource],
+    unread: Sequence[str],
     environment: dict[str, str],
-    before: str = "",
 ) -> Examination:
-    """Tests of one material, with what is known of it; `before` goes in front of the names of the parts."""
+    """Tests of one material, with what is known of it; `unread` are files of curves that cannot be read."""
     found = [*(check for one in studies for check in checks(law, one)), *known]
     remarks = [*lead(law, studies, found), *rate_idle(run.material), *read(reads)]
     remarks += [remark for one in studies for remark in notes(law, one)]
-    named = [replace(check, group=before + check.group) for check in found]
+    if unread:
+        remarks.append(Remark(ElementRemark.UNREAD, {"files": ", ".join(unread)}))
     return Examination(
-        study.name, study.title, study.command, tuple(remarks), tuple(named), parameters(law, run.stress, run.steps),
+        study.name, study.title, study.command, tuple(remarks), tuple(found), parameters(law, run.stress, run.steps),
         origins(law), environment, drawn(law, list(studies), run.stress),
     )  # fmt: skip
 

@@ -93,7 +93,7 @@ def from_file(path: File, units: str = "") -> ElementTest:
     sheared = bool(np.ptp(table[:, 2]) > np.ptp(table[:, :2], axis=0).max())
     source = PathSource(path.name, ("exx", "eyy", shear), unused(sheet), zero(sheet), float(np.abs(table).max()))
     return ElementTest(
-        "path", f"strain path of {path.name}", (XX, YY, XY), 1.0, shear=sheared, points=table, source=source
+        "path", f"Strain path of {path.name}", (XX, YY, XY), 1.0, shear=sheared, points=table, source=source
     )
 
 

@@ -19,7 +19,7 @@ ROUND_OFF = 1e-9  # relative errors below it have no order
 class ElementStudy:
     """One test: its curve, the exact one and its source, the errors at each number of steps, and the last order.
 
-    Stored curves that cannot be read are empty; the source says all the same whether the exact one is known.
+    `curve` is empty where it cannot be read; an exact curve is known where `source` says what it is.
     """
 
     test: ElementTest

@@ -1,6 +1,6 @@
 """What a study says once it has run: verdicts of the order rule, checks of the case, and the exit code of both."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,10 +9,9 @@ from mpm_verify.cases.harness.contract import case_named
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.cases.harness.study import ResultRecord, Study
 from mpm_verify.cases.harness.verdicts import Finding, findings
-from mpm_verify.cases.judging.records import Outcome
+from mpm_verify.cases.judging.records import Outcome, worst
 
 EXIT = {Outcome.PASS: 0, Outcome.FAIL: 1, Outcome.INCONCLUSIVE: 3, Outcome.ERROR: 4}
-WORST = (Outcome.FAIL, Outcome.ERROR, Outcome.INCONCLUSIVE, Outcome.PASS)
 
 
 @dataclass(frozen=True)
@@ -45,8 +44,3 @@ def analyse(study: Study[Any], results: Mapping[str, ResultRecord[Any]], store: 
     more = case.examine(study, results, store) if case.examine else None
     found = tuple(findings(study, results)) if study.plans else ()
     return Analysis(found, tuple(more.checks) if more else (), more)
-
-
-def worst(outcomes: Sequence[Outcome]) -> Outcome:
-    """The outcome that decides among several; INCONCLUSIVE where there is none."""
-    return next((outcome for outcome in WORST if outcome in set(outcomes)), Outcome.INCONCLUSIVE)

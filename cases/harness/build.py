@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from itertools import product
+from math import prod
 from typing import Any, cast, get_type_hints
 
 from pydantic import TypeAdapter, ValidationError
@@ -11,8 +12,10 @@ from pydantic import TypeAdapter, ValidationError
 from mpm_verify.cases.harness.contract import Case, case_named
 from mpm_verify.cases.harness.refinement import complete, refines
 from mpm_verify.cases.harness.study import QuantityPlan, RunRecord, Study, head
+from mpm_verify.solver.plugins import meant
 
 Values = Mapping[str, Sequence[Any]]
+MOST = 10_000  # runs of a study, without those that its judgement adds
 FIRST = ("method", "solution", "material")  # axes whose values begin the name of a study
 
 
@@ -80,7 +83,7 @@ def _runs(asked: Asked) -> tuple[tuple[Any, ...], list[QuantityPlan[Any]]]:
     known = [item.name for item in fields(case.Run)]
     for key in asked.values:
         if key not in known:
-            raise ValueError(f"{case.name} has no axis {key!r}; it has {', '.join(known)}")
+            raise ValueError(f"{case.name} has no axis {key!r}{meant(key, known)}; it has {', '.join(known)}")
     usual = case.quick if asked.quick else case.axes
     values = {key: list(dict.fromkeys(asked.values.get(key) or usual.get(key) or ())) for key in known}
     values = {key: chosen for key, chosen in values.items() if chosen}
@@ -97,11 +100,14 @@ def _runs(asked: Asked) -> tuple[tuple[Any, ...], list[QuantityPlan[Any]]]:
         order = [key for key in values if key not in inner] + inner
     else:
         order = [*(key for key in asked.values if key in values), *(key for key in values if key not in asked.values)]
+    if (count := prod(len(values[key]) for key in order) * max(1, asked.replicates)) > MOST:
+        raise ValueError(
+            f"{count:,} runs are asked for, and {MOST:,} is the most; give fewer values, or several studies"
+        )
     points = [dict(zip(order, point, strict=True)) for point in product(*(values[key] for key in order))]
     runs = tuple(dict.fromkeys(make(case, point) for point in points))
-    for courant in times:
-        make(case, {**points[-1], "courant": courant})  # says what is wrong with it
-    case.check(runs)
+    smaller = [make(case, {**point, "courant": courant}) for courant in times for point in points]
+    case.check((*runs, *smaller))
     if not (case.quantities and refines(case.Run)):
         return tuple(dict.fromkeys(case.companions(runs))), []
     plans = [plan for one in {head(run): run for run in reversed(runs)}.values() for plan in declare(case, one)]
@@ -150,7 +156,7 @@ def _default(case: Case, key: str) -> Any:
 def named(asked: Asked) -> str:
     """Name of a study: its methods and what is not as usual, so that another one gets a folder of its own."""
     case, words = asked.contract, [asked.case]
-    values = {key: list(chosen) for key, chosen in asked.values.items()}
+    values = {key: list(dict.fromkeys(chosen)) for key, chosen in asked.values.items()}
     usual = {item.name: [item.default] for item in fields(case.Run)} | {k: list(v) for k, v in case.axes.items()}
     for key in (key for key in FIRST if key in usual):
         chosen = values.pop(key, usual[key])

@@ -1,11 +1,11 @@
 """Checks: numbers held against what is known; and what a case examined, with curves to draw and remarks."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import isfinite
 from typing import Any, Literal
 
-from mpm_verify.cases.judging.records import Outcome
+from mpm_verify.cases.judging.records import Outcome, worst
 from mpm_verify.solver.failure import Failure
 from mpm_verify.solver.state import Floats
 
@@ -79,13 +79,20 @@ class Examination:
 
     @property
     def outcome(self) -> Outcome:
-        """The worst of its checks; INCONCLUSIVE where there are none."""
-        found = {check.outcome for check in self.checks}
-        worst = (Outcome.ERROR, Outcome.FAIL, Outcome.PASS)
-        return next((outcome for outcome in worst if outcome in found), Outcome.INCONCLUSIVE)
+        """The worst of its checks, a FAIL before an ERROR; INCONCLUSIVE where there are none."""
+        return worst(check.outcome for check in self.checks)
 
     @property
     def groups(self) -> tuple[str, ...]:
         """Names of the parts, in their order."""
         noted = [finding.group for finding in self.findings if finding.group]
         return tuple(dict.fromkeys([*(check.group for check in self.checks), *noted]))
+
+
+def gathered(examinations: Mapping[str, Examination]) -> tuple[Check, ...]:
+    """Checks of all; where there are several, groups begin with the name of their Examination."""
+    if len(examinations) == 1:
+        return next(iter(examinations.values())).checks
+    return tuple(
+        replace(check, group=f"{name}: {check.group}") for name, one in examinations.items() for check in one.checks
+    )

@@ -3,6 +3,7 @@
 A case is a module with
     Run, Result      records of cases/harness/study.py; each field of Run can be an axis of a study
     title            (runs) -> what a study of these runs is called unless it says otherwise
+and a module `execute.py` beside it, which is read when a run is to be done and whose imports name the Results:
     execute          (run, tick) -> (Result, arrays): runs to the end; what cannot go on is a failed Result
 and, where they apply, instead of the defaults of Case:
     AXES             values of the axes that are not asked for, by field
@@ -24,7 +25,7 @@ from pydantic import TypeAdapter
 
 from mpm_verify.cases.harness.study import ResultRecord, RunRecord, Study
 from mpm_verify.cases.judging.records import Expectation
-from mpm_verify.solver.plugins import CASES, available
+from mpm_verify.solver.plugins import CASES, available, meant
 
 
 @dataclass(frozen=True)
@@ -107,14 +108,15 @@ class Case:
     @property
     def execute(self) -> Callable[..., Any]:
         """A run to its end."""
-        return self.module.execute  # type: ignore[no-any-return]
+        return import_module(f"{CASES}.{self.name}.execute").execute  # type: ignore[no-any-return]
 
 
 @cache
 def case_named(name: str) -> Case:
     """The case of that name. Raises ValueError that lists the cases for another."""
     if name not in available(CASES):
-        raise ValueError(f"no case {name!r}; choose from {', '.join(available(CASES))}")
+        near = meant(name, available(CASES))
+        raise ValueError(f"no case {name!r}{near}; choose from {', '.join(available(CASES))}")
     return Case(name, import_module(f"{CASES}.{name}.case"))
 
 

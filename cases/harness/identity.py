@@ -83,8 +83,8 @@ def _own(package: str, specification: str, plugin: type) -> str:
         text = own.derived(made) + source_hash(own.__name__) + identity(MATERIALS, made.material)
     else:
         text = derived(Path(split(specification)[0]))
-        text += _rate(made.rate) if hasattr(made, "rate") else ""
-        text += energy(made) if hasattr(made, "energy") else ""
+        text += _rate(made.rate) if getattr(made, "rate", None) else ""
+        text += energy(made) if getattr(made, "energy", None) else ""
     return hashlib.sha256(text.encode()).hexdigest()
 
 

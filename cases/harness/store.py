@@ -26,6 +26,7 @@ from mpm_verify.cases.harness.study import FORMAT, Arrays
 from mpm_verify.solver.plugins import CASES, available
 
 HOUR = 3600.0
+OTHER = f"{{}} has format {{}}, this version reads {FORMAT}; use another --out folder"
 BROKEN = "{} is broken and was left as it is; move it away, and what it held is made again"
 
 
@@ -48,11 +49,13 @@ def case_of(folder: Path) -> str:
     path = folder / "study.json"
     try:
         data = json.loads(path.read_bytes())
-        case = data.get("case") if isinstance(data, dict) else None
+        case, found = (data.get("case"), data.get("format")) if isinstance(data, dict) else (None, FORMAT)
     except FileNotFoundError as error:
         raise StoreError(f"{folder} is no study folder: it holds no study.json") from error
     except (OSError, ValueError, RecursionError) as error:
         raise StoreError(BROKEN.format(path)) from error
+    if found != FORMAT:
+        raise StoreError(OTHER.format(path, found))
     if case not in available(CASES):
         known = ", ".join(available(CASES))
         raise StoreError(f"{path} is of the case {case}, and this version has {known}; use another --out folder")
@@ -111,21 +114,11 @@ class Store:
                 f"cannot read {path}: {error}; delete it and its .json file to run that run again"
             ) from error
 
-    def readable(self, digest: str) -> bool:
-        """Whether the arrays of that run can be read."""
-        try:
-            self.arrays(digest)
-        except StoreError:
-            return False
-        return True
-
     def _read(self, path: Path, adapter: TypeAdapter[Any]) -> Any:
         try:
             data = json.loads(path.read_bytes())
             if data.get("format") != FORMAT:
-                raise StoreError(
-                    f"{path} has format {data.get('format')}, this version reads {FORMAT}; use another --out folder"
-                )
+                raise StoreError(OTHER.format(path, data.get("format")))
             if data.get("case", self.case) != self.case:
                 raise StoreError(
                     f"{self.folder} holds the case {data['case']}, not {self.case}; use another --out folder"

@@ -1,5 +1,6 @@
 """What the order rule takes and gives: Expectation and Level in, Outcome, Reason and Verdict out; no words."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from enum import StrEnum
 from math import isfinite
@@ -14,6 +15,15 @@ class Outcome(StrEnum):
     FAIL = "FAIL"
     INCONCLUSIVE = "INCONCLUSIVE"
     ERROR = "ERROR"
+
+
+WORST = (Outcome.FAIL, Outcome.ERROR, Outcome.INCONCLUSIVE, Outcome.PASS)
+
+
+def worst(outcomes: Iterable[Outcome]) -> Outcome:
+    """The outcome that decides among several; INCONCLUSIVE where there is none."""
+    found = set(outcomes)
+    return next((outcome for outcome in WORST if outcome in found), Outcome.INCONCLUSIVE)
 
 
 @dataclass(frozen=True)

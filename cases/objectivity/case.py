@@ -7,15 +7,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from mpm_verify.cases.harness.checks import Check, Curves, Examination
+from mpm_verify.cases.harness.build import axes
+from mpm_verify.cases.harness.checks import Check, Curves, Examination, gathered
 from mpm_verify.cases.harness.store import Store, StoreError
 from mpm_verify.cases.harness.study import Study
 from mpm_verify.cases.objectivity.axes import BLOCK, KINEMATIC, Block
 from mpm_verify.cases.objectivity.block import blocks
-from mpm_verify.cases.objectivity.exam import examination, unreadable
-from mpm_verify.cases.objectivity.execute import ObjectivityResult, execute
+from mpm_verify.cases.objectivity.exam import examination
+from mpm_verify.cases.objectivity.execute import ObjectivityResult
 
-__all__ = ["Result", "Run", "companions", "examine", "execute", "title"]
+__all__ = ["Result", "Run", "companions", "examine", "title"]
 
 Run, Result = Block, ObjectivityResult
 
@@ -29,7 +30,7 @@ class ObjectivityAnalysis:
     @property
     def checks(self) -> tuple[Check, ...]:
         """Those of all."""
-        return tuple(check for one in self.examinations.values() for check in one.checks)
+        return gathered(self.examinations)
 
 
 def title(runs: Sequence[Block]) -> str:
@@ -51,9 +52,8 @@ def examine(study: Study[Block], results: Mapping[str, ObjectivityResult], store
         stored = {name: results[run.digest] for name, run in named.items() if run.digest in results}
         arrays = {name: curves(store, result) for name, result in stored.items()}
         if len(stored) == len(named):
-            before = f"{base.cells} cells, {base.ppc} per cell: " if len(bases) > 1 else ""
-            make = examination if all(arrays.values()) else unreadable
-            found[before] = make(study, base, stored, arrays, before)
+            name = ", ".join(f"{axis} {getattr(base, axis)}" for axis in axes(bases))
+            found[name] = examination(study, base, stored, arrays)
     return ObjectivityAnalysis(found)
 
 

@@ -1,20 +1,17 @@
 """`verify objectivity`: everything about frame indifference that needs no soil, as one Examination."""
 
 from collections.abc import Mapping
-from dataclasses import replace
 
 import numpy as np
 
-from mpm_verify.cases.harness.checks import Check, Curves, Examination
+from mpm_verify.cases.harness.checks import Check, Curves, Examination, Remark
 from mpm_verify.cases.harness.study import ResultRecord, Study
 from mpm_verify.cases.objectivity import block as full
 from mpm_verify.cases.objectivity import rates as kinematic
 from mpm_verify.cases.objectivity.axes import KINEMATIC, Block
 from mpm_verify.cases.objectivity.exact import ramped_column
-from mpm_verify.cases.objectivity.findings import ObjectivityRemark, findings, lead
+from mpm_verify.cases.objectivity.findings import ObjectivityRemark, findings
 from mpm_verify.solver.plugins import NEGATIVE_CONTROLS, available
-
-STORED = "Stored curves"  # group of what cannot be read
 
 
 def examination(
@@ -22,64 +19,47 @@ def examination(
     block: Block,
     results: Mapping[str, ResultRecord[Block]],
     arrays: Mapping[str, Curves],
-    before: str = "",
 ) -> Examination:
-    """All parts of one block by their names; `before` goes in front of the names of the groups of checks."""
-    found = {name: (arrays[name], results[name].failure) for name in arrays if name != KINEMATIC}
-    kept = curves(block, found, arrays[KINEMATIC])
+    """All parts of one block by their names.
+
+    `arrays` are the curves to draw; those of a part may be missing, and decide nothing.
+    """
     known: tuple[Check, ...] = results[KINEMATIC].checks  # type: ignore[attr-defined]
-    checks = [*full.checks(block, found), *known]
-    errors = {name[7:]: curve["error"] for name, curve in kept.items() if name.startswith("errors/")}
+    checks = [*full.checks(block, results), *known]
     return Examination(
         study.name,
         study.title,
         study.command,
-        tuple(findings(block, checks, kept, errors)),
-        tuple(replace(check, group=before + check.group) for check in checks),
+        (*findings(block, checks, results), *unread(results, arrays)),
+        tuple(checks),
         parameters(block),
         ORIGINS,
         results[KINEMATIC].environment,
-        kept,
+        curves(block, results, arrays),
     )
 
 
-def unreadable(
-    study: Study[Block],
-    block: Block,
-    results: Mapping[str, ResultRecord[Block]],
-    arrays: Mapping[str, Curves],
-    before: str = "",
-) -> Examination:
-    """The checks that need no curves, and an ERROR for each part whose curves cannot be read; nothing is drawn."""
-    known: tuple[Check, ...] = results[KINEMATIC].checks  # type: ignore[attr-defined]
-    missing = [Check(STORED, name, np.nan, 0.0, "absolute", "") for name, found in arrays.items() if not found]
-    checks = [*missing, *known]
-    return Examination(
-        study.name, study.title, study.command, (lead(block, checks, {}, []),),
-        tuple(replace(check, group=before + check.group) for check in checks), parameters(block), ORIGINS,
-        results[KINEMATIC].environment,
-    )  # fmt: skip
+def unread(results: Mapping[str, ResultRecord[Block]], arrays: Mapping[str, Curves]) -> list[Remark]:
+    """A remark on the files of curves that cannot be read."""
+    files = [f"runs/{result.digest}.npz" for name, result in results.items() if not arrays.get(name)]
+    return [Remark(ObjectivityRemark.UNREAD, {"files": ", ".join(files)})] if files else []
 
 
-def curves(block: Block, found: full.Found, prescribed: Curves) -> Curves:
-    """What the page draws."""
+def curves(block: Block, results: Mapping[str, ResultRecord[Block]], arrays: Mapping[str, Curves]) -> Curves:
+    """What the page draws, and `control/NAME`: what each negative control misses by."""
+    runs = {name: found for name, found in arrays.items() if name != KINEMATIC and found}
     kept: Curves = {"exact": kinematic.exact_figure2(block, np.linspace(0, 2, 401))}
-    kept |= {f"run/{name}": run["mean"] for name, (run, _) in found.items() if run["mean"]["t"].size}
+    kept |= {f"run/{name}": run["mean"] for name, run in runs.items() if run["mean"]["t"].size}
     t = np.linspace(0, 1, 201)
     kept["wave"] = {"t": t, "yy": ramped_column(t, block.law.wave_speed(), block.L)}
-    kept |= {f"field/{name}": run["field"] for name, (run, _) in found.items()}
-    kept |= prescribed
+    kept |= {f"field/{name}": run["field"] for name, run in runs.items()}
+    kept |= arrays.get(KINEMATIC, {})
+    known = results[KINEMATIC].values
     for name in available(NEGATIVE_CONTROLS):
-        curve = prescribed[f"figure2/{name}"]
-        away = max(
-            float(np.abs(curve[c] - kinematic.exact_figure2(block, curve["t"])[c]).max()) for c in ("xx", "yy", "xy")
-        )
-        run, failure = found[name]
-        miss = np.inf if failure else full.misses(run["mean"], block).max()
         kept[f"control/{name}"] = {
-            "kinematic": np.array([away]),
-            "run": np.array([miss]),
-            "stretched": prescribed[f"errors/{name}"]["error"][-1:],
+            "kinematic": np.array([known[f"figure2 {name}"]]),
+            "run": np.array([results[name].values.get("miss", np.inf)]),
+            "stretched": np.array([known[f"stretched {name}"]]),
         }
     return kept
 

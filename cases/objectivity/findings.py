@@ -8,19 +8,18 @@ from enum import StrEnum
 
 import numpy as np
 
-from mpm_verify.cases.harness.checks import Check, Curves, Remark
+from mpm_verify.cases.harness.checks import Check, Remark
+from mpm_verify.cases.harness.study import ResultRecord
 from mpm_verify.cases.objectivity import block as full
-from mpm_verify.cases.objectivity.axes import Block
+from mpm_verify.cases.objectivity.axes import KINEMATIC, Block
 from mpm_verify.cases.objectivity.exact import SIMPLE_SHEAR
-from mpm_verify.cases.objectivity.rates import ORDERS, SHEAR, slope
-from mpm_verify.cases.objectivity.turning_block import RAMP
-from mpm_verify.solver.plugins import RATES, available
-from mpm_verify.solver.state import Floats
+from mpm_verify.cases.objectivity.rates import CONTROLS, ORDERS, SHEAR
+from mpm_verify.solver.plugins import NEGATIVE_CONTROLS, RATES, available
 
-CONTROLS, INERTIA = "Negative controls", "Inertial fraction"
+INERTIA = "Inertial fraction"
 UNSEEN = 1e-6  # of the stress: a miss in Figure 2 below which it cannot tell a negative control from a rate
 MODERATE = 0.5  # shear up to which the rates hardly differ
-Curve = Mapping[str, Floats]
+Numbers = Mapping[str, float]
 
 
 class ObjectivityRemark(StrEnum):
@@ -38,6 +37,7 @@ class ObjectivityRemark(StrEnum):
     ORDERS = "objectivity.orders"  # of rates and controls in a turn with strain
     INCREMENT = "objectivity.increment"  # of the strain, and what F0 alone would do
     NOT_UNIQUE = "objectivity.not_unique"  # rates in simple shear
+    UNREAD = "objectivity.unread"  # files of curves that cannot be read
     PAPER = "objectivity.paper"
     UNIT_SQUARE = "objectivity.unit_square"
     GROWN = "objectivity.grown"
@@ -47,29 +47,26 @@ class ObjectivityRemark(StrEnum):
     OF_THE_SMALL = "objectivity.of_the_small"
 
 
-def findings(block: Block, checks: list[Check], curves: Curves, errors: Mapping[str, Floats]) -> list[Remark]:
-    """What came out; notes on the CPDI runs only where all three came to their end."""
-    unseen = [name for name, curve in of_controls(curves).items() if curve["kinematic"][0] < UNSEEN]
-    found = [lead(block, checks, curves, unseen)]
-    names = [f"run/{name}" for name in (full.PRINTED, full.SMALL, full.REST)]
-    if all(name in curves for name in names):
-        found += of_runs(block, *(curves[name] for name in names))
-    return [*found, *of_controls_and_rates(curves, errors, unseen)]
+def findings(block: Block, checks: list[Check], results: Mapping[str, ResultRecord[Block]]) -> list[Remark]:
+    """What came out, from the numbers of all parts; notes on the CPDI runs only where all three came to their end."""
+    known = results[KINEMATIC].values
+    unseen = [name for name in available(NEGATIVE_CONTROLS) if known[f"figure2 {name}"] < UNSEEN]
+    runs = [results[name].values for name in (full.PRINTED, full.SMALL, full.REST)]
+    found = [lead(block, checks, runs[1], unseen)]
+    if all(runs):
+        found += of_runs(block, *runs)
+    return [*found, *of_controls_and_rates(known, unseen)]
 
 
-def of_controls(curves: Curves) -> Curves:
-    """Misses of the negative controls by name."""
-    return {name.partition("/")[2]: curve for name, curve in curves.items() if name.startswith("control/")}
-
-
-def lead(block: Block, checks: list[Check], curves: Curves, unseen: list[str]) -> Remark:
+def lead(block: Block, checks: list[Check], small: Numbers, unseen: list[str]) -> Remark:
     """How many checks missed; where none did, the largest shear stress and which controls Figure 2 does not see."""
     missed = sum(check.outcome != "PASS" for check in checks)
     if missed:
         return Remark(ObjectivityRemark.MISSED, {"missed": missed, "checks": len(checks)})
-    peak, controls = float(curves[f"run/{full.SMALL}"]["xy"].max()), len(of_controls(curves))
-    numbers = {"peak": peak, "exact": largest_shear(block), "controls": controls, "unseen": len(unseen)}
-    return Remark(ObjectivityRemark.TURNS, numbers)
+    numbers = {"peak": small["peak"], "exact": largest_shear(block)}
+    return Remark(
+        ObjectivityRemark.TURNS, numbers | {"controls": len(available(NEGATIVE_CONTROLS)), "unseen": len(unseen)}
+    )
 
 
 def largest_shear(block: Block) -> float:
@@ -77,37 +74,28 @@ def largest_shear(block: Block) -> float:
     return 0.5 * (1 - block.nu / (1 - block.nu))
 
 
-def of_runs(block: Block, printed: Curve, small: Curve, rest: Curve) -> list[Remark]:
+def of_runs(block: Block, printed: Numbers, small: Numbers, rest: Numbers) -> list[Remark]:
     """Numbers of the block as printed, of the small one, and of the one that is not turned."""
-    late = {name: curve["t"] > RAMP for name, curve in (("printed", printed), ("small", small), ("rest", rest))}
-    quarter = max(1, int(late["printed"].sum()) // 4)
-    own = abs(printed["own_xy"][late["printed"]])
-    local = max(float(small["shear"][late["small"]].max()), float(printed["shear"][late["printed"]].max()))
-    away = {
-        name: float(curve["own_yy"][late[name]].mean()) + 1
-        for name, curve in (("printed", printed), ("rest", rest), ("small", small))
-    }
+    away = {"printed": printed["own_yy"], "rest": rest["own_yy"], "small": small["own_yy"]}
     inertia = {"L": block.L, "fraction": block.share, "small_fraction": block.share / 100, **away}
+    largest = max(small["particle"], printed["particle"])
     return [
-        Remark(ObjectivityRemark.SWAP, {"exact": largest_shear(block), "peak": float(small["xy"].max())}, full.GROUP),
-        Remark(ObjectivityRemark.CO_ROTATED,
-               {"early": float(own[:quarter].max()), "end": float(own[-quarter:].max())}, full.GROUP),
+        Remark(ObjectivityRemark.SWAP, {"exact": largest_shear(block), "peak": small["peak"]}, full.GROUP),
+        Remark(ObjectivityRemark.CO_ROTATED, {"early": printed["early"], "end": printed["late"]}, full.GROUP),
         Remark(ObjectivityRemark.INERTIA, inertia, INERTIA),
         Remark(ObjectivityRemark.RIPPLE, {"L": block.L, "period": 4 * block.L / block.law.wave_speed()}, INERTIA),
-        Remark(ObjectivityRemark.PARTICLES, {"largest": local}, INERTIA),
-    ]  # fmt: skip
+        Remark(ObjectivityRemark.PARTICLES, {"largest": largest}, INERTIA),
+    ]
 
 
-def of_controls_and_rates(curves: Curves, errors: Mapping[str, Floats], unseen: list[str]) -> list[Remark]:
+def of_controls_and_rates(known: Numbers, unseen: list[str]) -> list[Remark]:
     """Which controls Figure 2 cannot see, orders of rates and controls, how near rates are in simple shear."""
-    orders = {name: slope(error) for name, error in errors.items()}
-    right = [orders[name] for name in available(RATES)]
-    printed = float(of_controls(curves)["printed"]["kinematic"][0])
+    right = [known[f"order {name}"] for name in available(RATES)]
     shear = [float(SIMPLE_SHEAR[rate](np.array([MODERATE]))[0, 2]) for rate in available(RATES)]
     spread = {"shear": MODERATE, "spread": max(shear) / min(shear) - 1, "rates": len(shear)}
     return [
-        Remark(ObjectivityRemark.CONTROLS, {name: orders[name] for name in unseen}, CONTROLS),
-        Remark(ObjectivityRemark.PRINTED, {"miss": printed}, CONTROLS),
+        Remark(ObjectivityRemark.CONTROLS, {name: known[f"order {name}"] for name in unseen}, CONTROLS),
+        Remark(ObjectivityRemark.PRINTED, {"miss": known["figure2 printed"]}, CONTROLS),
         Remark(ObjectivityRemark.ORDERS, {"least": min(right), "most": max(right)}, ORDERS),
         Remark(ObjectivityRemark.INCREMENT, {}, ORDERS),
         Remark(ObjectivityRemark.NOT_UNIQUE, spread, SHEAR),

@@ -63,8 +63,8 @@ def execute(run: Run, tick: Callable[[float], None] = lambda fraction: None) -> 
             advance(model, no_load)
     except RunFailed as ended:
         failure = ended.failure
-    t: Floats = model.dt * np.arange(len(mode.q))
-    q: Floats = np.array(mode.q)
+    t = np.array([model.dt * step for step in range(len(mode.q))])
+    q = np.array(mode.q)
     found = frequency(t, q)
     result = Result(
         run=run,

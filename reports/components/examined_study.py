@@ -6,9 +6,10 @@ from pathlib import Path
 
 from mpm_verify.cases.harness.checks import Examination
 from mpm_verify.cases.harness.store import StoreError
-from mpm_verify.reports.components.examined import Section, Sections, checks_table, render
+from mpm_verify.reports.components.examined import Section, Sections, render
 from mpm_verify.reports.components.page import Add
 from mpm_verify.reports.frames import Record
+from mpm_verify.reports.sentences.remarks import leads
 
 
 def page(record: Record, sections: Sections, kinds: Sequence[str] = ("svg", "pdf", "png")) -> Path:
@@ -16,32 +17,35 @@ def page(record: Record, sections: Sections, kinds: Sequence[str] = ("svg", "pdf
     found: Mapping[str, Examination] = record.analysis.more.examinations
     if not found:
         raise StoreError(f"{record.store.folder} holds no part that can be drawn: run its study to the end")
-    whole = replace(
-        next(iter(found.values())),
+    return render(
+        record.store.folder, whole(record, found), lambda _, add: every(found, sections, add), kinds,
+        said=" ".join(leads(found)),
+    )  # fmt: skip
+
+
+def whole(record: Record, found: Mapping[str, Examination]) -> Examination:
+    """All of them as one; parameters begin with the name of their Examination where there are several."""
+    first, several = next(iter(found.values())), len(found) > 1
+    named = [(f"{name}: " * several, one) for name, one in found.items()]
+    return replace(
+        first,
         title=record.study.title,
-        checks=tuple(check for one in found.values() for check in one.checks),
+        checks=record.analysis.checks,
         findings=tuple(finding for one in found.values() for finding in one.findings),
+        parameters={before + key: value for before, one in named for key, value in one.parameters.items()},
+        origins={before + key: code for before, one in named for key, code in one.origins.items()},
     )
-    return render(record.store.folder, whole, lambda _, add: every(found, sections, add), kinds)
 
 
 def every(found: Mapping[str, Examination], sections: Sections, add: Add) -> Sequence[Section]:
-    """The sections of each, with its name in front where there are several; of one without curves its checks."""
+    """The sections of each, with its name in front where there are several."""
     if len(found) == 1:
-        return of_one(next(iter(found.values())), sections, add)
-    parts: list[Section] = []
+        return sections(next(iter(found.values())), add)
+    parts = []
     for number, (name, one) in enumerate(found.items(), 1):
-        mine = of_one(one, sections, numbered(add, number))
-        heading = name.rstrip(": ")
-        parts += [replace(part, key=f"{part.key}-{number}", heading=f"{heading}: {part.heading}") for part in mine]
+        mine = sections(one, numbered(add, number))
+        parts += [replace(part, key=f"{part.key}-{number}", heading=f"{name}: {part.heading}") for part in mine]
     return parts
-
-
-def of_one(examination: Examination, sections: Sections, add: Add) -> Sequence[Section]:
-    """The sections of an Examination."""
-    if examination.curves:
-        return sections(examination, add)
-    return [Section("checks", "Checks", tables=[checks_table("Checks", examination.checks, group=True)])]
 
 
 def numbered(add: Add, number: int) -> Add:

@@ -7,6 +7,7 @@ from typing import Any
 import pandas as pd
 
 from mpm_verify.cases.column.exam import ColumnAnalysis
+from mpm_verify.cases.column.exam import arrays as read_arrays
 from mpm_verify.cases.column.exam import curves as read_curves
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.reports.export.vtk import write_series
@@ -30,6 +31,8 @@ def tables(collapse: ColumnAnalysis, store: Store, folder: Path) -> None:
             head = {"digest": run.digest, "status": result.status, "failure": failure}
             rows.append(joined(head, parameters, measured(result.values)))
             columns = {name: values for name, values in read_curves(store, result).items() if values.ndim == 1}
+            if not columns:
+                continue
             named = {axis: words.value(axis, getattr(run, axis)) for axis in collapse.study.axes}
             if columns:
                 curves.append(pd.DataFrame(joined({"digest": run.digest}, named, measured(columns))))
@@ -48,8 +51,7 @@ def files(collapse: ColumnAnalysis, store: Store, folder: Path) -> None:
     folder.mkdir(exist_ok=True)
     for run in collapse.study.runs:
         result = collapse.results.get(run.digest)
-        if result and store.readable(result.digest):
-            arrays = store.arrays(result.digest)
+        if result and (arrays := read_arrays(store, result)):
             named = {
                 key[9:]: values for key, values in arrays.items() if key.startswith("snapshot_") and key != "snapshot_t"
             }

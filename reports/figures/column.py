@@ -23,6 +23,7 @@ from mpm_verify.solver.state import Floats
 
 WIDE = 5.4
 SIZE = WIDE, 4.4
+LINES, LINE = 3, 0.22  # of a legend that such a figure has room for; height of one more, inches
 SAND = "#e8d5a3"
 DARK, PALE = "#4a3728", "#d9bf86"  # bands of sand, as in the experiment
 BANDS = 10  # of the column's height
@@ -87,8 +88,8 @@ def energy(ran: Sequence[FinishedRun], labels: Labels, name: str) -> Figure:
     with rc_context(style.RC):
         figure, axes = style.panel(SIZE, xlabel=TIME, ylabel=f"{name} energy / initial potential energy")
         for place, (one, label) in enumerate(zip(ran, labels, strict=True)):
-            share = one.curves[name] / one.curves["potential"][0]
-            axes.plot(one.curves["t"] / one.run.tau, share, label=label, **stroke(place))
+            fraction = one.curves[name] / one.curves["potential"][0]
+            axes.plot(one.curves["t"] / one.run.tau, fraction, label=label, **stroke(place))
         axes.set(xlim=(0, None), ylim=(0, None))
         legend(figure, labels)
     return figure
@@ -102,7 +103,7 @@ def budget(one: FinishedRun) -> Figure:
         "damping": c["damping"], "walls": -c["walls"], "lost by the method": c["transfer"] + c["convection"],
     }  # fmt: skip
     with rc_context(style.RC):
-        figure, axes = style.panel(SIZE, xlabel=TIME, ylabel="share of the initial potential energy")
+        figure, axes = style.panel(SIZE, xlabel=TIME, ylabel="fraction of the initial potential energy")
         below, t, shown = np.zeros_like(c["t"]), c["t"] / one.run.tau, []
         for (name, layer), colour in zip(layers.items(), style.COLOURS, strict=False):
             above = below + layer / start
@@ -221,9 +222,11 @@ def stroke(place: int) -> dict[str, Any]:
 
 
 def legend(figure: Figure, labels: Labels, columns: int = 2) -> None:
-    """Below, in as many columns as the labels leave room for."""
+    """Below, in as many columns as the labels leave room for; for many lines of it the figure grows."""
     handles, names = figure.axes[0].get_legend_handles_labels()
     if len(labels) > 1:
         longest = max(map(len, labels))
         columns = 1 if longest > 34 else columns
+        wide, high = figure.get_size_inches()
+        figure.set_size_inches(wide, high + LINE * max(0, -(-len(labels) // columns) - LINES))
         figure.legend(handles, names, loc="outside lower center", ncols=columns, fontsize=10, handlelength=2.4)

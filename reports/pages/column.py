@@ -3,7 +3,8 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from mpm_verify.cases.column.exam import ColumnAnalysis
+from mpm_verify.cases.column.claims import FinishedRun
+from mpm_verify.cases.column.exam import ColumnAnalysis, curves
 from mpm_verify.cases.column.run import ColumnResult, ColumnRun
 from mpm_verify.cases.harness.store import Store, StoreError
 from mpm_verify.reports.components.examined import Section, checks_table, render
@@ -36,14 +37,18 @@ def sections(collapse: ColumnAnalysis, store: Store, add: Add) -> Sequence[Secti
     found = [summary(collapse, add)]
     if collapse.claims:
         found.append(said(collapse))
-    if collapse.drawn:
-        found += [motion(collapse, add), energy(collapse, add), budget(collapse, add)]
+    if drawn := [one for one in collapse.ran if one.curves]:
+        labels = [words.label(collapse.study, one.run) for one in drawn]
+        found += [motion(drawn, labels, add), energy(drawn, labels, add), budget(drawn, labels, add)]
     if collapse.refined or collapse.scattered:
         found.append(refinement(collapse, add))
-    ran = [(run, collapse.results[run.digest]) for run in collapse.study.runs if run.digest in collapse.results]
-    if seen := [(run, result) for run, result in ran if store.readable(result.digest)]:
-        found += [set_up(store, add, *seen[0]), films(collapse, store, add, seen)]
-    if ran:
+    kept = [
+        (run, collapse.results[run.digest]) for run in collapse.study.runs
+        if run.digest in collapse.results and curves(store, collapse.results[run.digest])
+    ]  # fmt: skip
+    if kept:
+        found += [set_up(store, add, *kept[0]), films(collapse, store, add, kept)]
+    if collapse.results:
         found.append(alive(collapse))
     return [*found, Section("checks", "Invariants, whatever the experiment says", tables=[
         checks_table("Checks", collapse.examination.checks, group=True)])]  # fmt: skip
@@ -99,9 +104,8 @@ def said(collapse: ColumnAnalysis) -> Section:
         Table("Sentences of the paper on this axis", head, rows, texts=head[1:])])  # fmt: skip
 
 
-def motion(collapse: ColumnAnalysis, add: Add) -> Section:
+def motion(ran: Sequence[FinishedRun], labels: Sequence[str], add: Add) -> Section:
     """Fronts and final profiles."""
-    ran, labels = collapse.drawn, [words.label(collapse.study, one.run) for one in collapse.drawn]
     return Section("motion", "Run-out", figures=[
         (add("front", draw.fronts(ran, labels), "Front against time; its final values are in the table of runs."),
          "Front against normalised time. Shaded: where the experiment's front rests; dashes: the times of that."),
@@ -110,25 +114,24 @@ def motion(collapse: ColumnAnalysis, add: Add) -> Section:
     ])  # fmt: skip
 
 
-def budget(collapse: ColumnAnalysis, add: Add) -> Section:
+def budget(ran: Sequence[FinishedRun], labels: Sequence[str], add: Add) -> Section:
     """All of the energy of the first run and of the last."""
     figures = []
-    for number, key in {0: "first", len(collapse.drawn) - 1: "last"}.items():
-        one, label = collapse.drawn[number], words.label(collapse.study, collapse.drawn[number].run)
-        image = add(f"budget_{key}", draw.budget(one), f"Layers of the energy budget over time, {label}.")
-        figures.append((image, f"{label[0].upper()}{label[1:]}. The line on top stays at 1 as the budget closes."))
+    for number, key in {0: "first", len(ran) - 1: "last"}.items():
+        label = labels[number]
+        image = add(f"budget_{key}", draw.budget(ran[number]), f"Layers of the energy budget over time, {label}.")
+        figures.append((image, f"Run: {label}. The line on top stays at 1 as the budget closes."))
     return Section("budget", "Where the energy goes", figures=figures)
 
 
-def energy(collapse: ColumnAnalysis, add: Add) -> Section:
+def energy(ran: Sequence[FinishedRun], labels: Sequence[str], add: Add) -> Section:
     """Energies of all."""
-    ran, labels = collapse.drawn, [words.label(collapse.study, one.run) for one in collapse.drawn]
     figures = [
         (add(name, draw.energy(ran, labels, name), f"{name.capitalize()} energy of each run over time."),
          f"The paper's Figure 6: {name} energy.")
         for name in ("potential", "kinetic")
     ]  # fmt: skip
-    columns = ("potential", "kinetic", "seen by the grid", "elastic", "plastic", "damping", "walls", "transfer",
+    columns = ("potential", "kinetic", "on the grid", "elastic", "plastic", "damping", "walls", "transfer",
                "convection", "residual")  # fmt: skip
     rows = []
     for one, label in zip(ran, labels, strict=True):
@@ -141,8 +144,8 @@ def energy(collapse: ColumnAnalysis, add: Add) -> Section:
         "it is all that is left. Two columns are what the method loses: transfer, on the way of velocities between "
         "particles and grid, and convection, the work of the forces at the nodes less that of the stress in the "
         "particles. Each term is computed apart from the others; the residual is what their sum misses. Where the "
-        "gradients of weights jump, as those of classical MPM do, convection is no small share."
+        "gradients of weights jump, as those of classical MPM do, convection is no small fraction."
     )
     return Section("energy", "Energy", [text], figures, [
-        Table("Energies at the end, % of the initial potential energy; residual: its largest share at any time",
+        Table("Energies at the end, % of the initial potential energy; residual: its largest fraction at any time",
               ("run", *columns), tuple(rows))])  # fmt: skip

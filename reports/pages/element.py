@@ -23,7 +23,7 @@ def page(record: Record, vtk: bool = False) -> Path:
 
 def sections(examination: Examination, add: Add) -> Sequence[Section]:
     """A section a test, one for the errors, one for what is known of the material."""
-    names = [name.partition("/")[2] for name in examination.curves if name.startswith("kind/")]
+    names = [name.partition("/")[2] for name in examination.curves if name.startswith("errors/")]
     noted = dict.fromkeys(finding.group for finding in examination.findings if finding.group)
     titles = dict(zip(names, noted, strict=True))
     tests = [test(examination, name, titles[name], add) for name in names]
@@ -31,27 +31,23 @@ def sections(examination: Examination, add: Add) -> Sequence[Section]:
     known = [checks_table(group, [c for c in examination.checks if c.group == group]) for group in rest]
     own = [
         Section(
-            "law",
+            "known",
             "What is known of the material",
             ["Tables, limits and invariants, in runs of 100 steps unless said."],
             (),
             known,
         )
     ]
-    return [*tests, steps(examination, titles, add), *(own if known else [])]
+    return [*tests, *([steps(examination, titles, add)] if titles else []), *(own if known else [])]
 
 
 def test(examination: Examination, name: str, title: str, add: Add) -> Section:
     """Stress path, stress and volume against strain, with the closed form below where there is one."""
-    images = figures(examination, name, title, add) if f"test/{name}" in examination.curves else []
-    checks = [check for check in examination.checks if check.group == title]
-    tables = [checks_table("Checks", checks)] if checks else []
-    return Section(name, title, [" ".join(notes(examination, title))], images, tables)
-
-
-def figures(examination: Examination, name: str, title: str, add: Add) -> list[tuple[Image, str]]:
-    """The figures of one test, each with its caption."""
     curves = examination.curves
+    checks = [check for check in examination.checks if check.group == title]
+    tables, words = [checks_table("Checks", checks)] if checks else [], [" ".join(notes(examination, title))]
+    if f"test/{name}" not in curves:
+        return Section(name, title, words, (), tables)
     curve, exact = curves[f"test/{name}"], curves.get(f"exact/{name}")
     shear, strength = bool(curves[f"kind/{name}"]["shear"][0]), curves.get("strength")
     line = (float(strength["a"][0]), float(strength["b"][0])) if strength else None
@@ -72,7 +68,7 @@ def figures(examination: Examination, name: str, title: str, add: Add) -> list[t
     if np.abs(curve["ev"]).max() > 1e-9:
         volume = draw.volume(curve, exact, x, shear, points.get("ev", ()))
         images.append((add(f"{name}_volume", volume, f"{title}: volume strain."), "Volume strain."))
-    return images
+    return Section(name, title, words, images, tables)
 
 
 def steps(examination: Examination, titles: dict[str, str], add: Add) -> Section:

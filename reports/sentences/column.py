@@ -8,6 +8,7 @@ from mpm_verify.cases.column.claims import Claim, ClaimCode, Compared, beyond
 from mpm_verify.cases.column.exam import ColumnRemark
 from mpm_verify.cases.column.experiment import Band
 from mpm_verify.cases.column.run import ColumnRun, ColumnStudy
+from mpm_verify.reports.sentences.remarks import unread
 
 NOTHING = {
     ("smoothing", "none"): "no smoothing", ("start", "none"): "no stress at first", ("limit", inf): "no limit",
@@ -33,7 +34,7 @@ def value(axis: str, of: Any) -> str:
         return f"{100 * of:g} % damping"
     if axis in AFTER:
         return f"{of} {AFTER[axis]}"
-    if axis in ("method", "law"):
+    if axis in ("method", "material"):
         return str(of)
     return f"{axis} {f'{of:g}' if isinstance(of, float) else of}"
 
@@ -45,7 +46,7 @@ def listed(values: Mapping[str, Any]) -> str:
 
 def label(study: ColumnStudy, run: ColumnRun) -> str:
     """A run by what the study varies; by its method, mesh and material where it varies nothing."""
-    return listed({axis: getattr(run, axis) for axis in study.axes or ("method", "cells", "ppc", "law")})
+    return listed({axis: getattr(run, axis) for axis in study.axes or ("method", "cells", "ppc", "material")})
 
 
 def quantity(key: str) -> str:
@@ -246,6 +247,11 @@ def claims(n: Mapping[str, Any]) -> str:
     return f"Sentences of the paper: {n['reproduced']:g} reproduced, {n['not_reproduced']:g} not{untold}."
 
 
+def unread_curves(n: Mapping[str, Any]) -> str:
+    """Which figures and sentences there are not."""
+    return f"{unread(n)} So are sentences of the paper that are about curves."
+
+
 REMARKS: dict[str, Callable[[Mapping[str, Any]], str]] = {
     ColumnRemark.FINISHED: lambda n: f"{n['finished']:g} of {n['runs']:g} runs came to their end.",
     ColumnRemark.FAILED: lambda n: f"{n['failed']:g} failed; the table says where and why.",
@@ -262,6 +268,7 @@ REMARKS: dict[str, Callable[[Mapping[str, Any]], str]] = {
         f"The front comes to {n['front']:.3f} m, and the height at the wall is {n['height']:.3f} m. The method itself "
         f"loses {100 * n['lost']:.1f} % of the energy."
     ),
+    ColumnRemark.UNREAD: unread_curves,
     ColumnRemark.BANDS: lambda n: (
         "The band of the experiment lies between two forms in which texts quote its scaling law, that of the height "
         "between two experiments; they are no error bars. No curve of the experiment is shown, because none is at hand."

@@ -5,7 +5,8 @@ from typing import Any
 
 from mpm_verify.cases.element.element import ElementFailure
 from mpm_verify.cases.element.exam import ElementRemark as Code
-from mpm_verify.reports.sentences.remarks import Words
+from mpm_verify.reports.sentences.numbers import span
+from mpm_verify.reports.sentences.remarks import Words, unread
 from mpm_verify.solver.material.ubcsand import Ubcsand
 
 Numbers = Mapping[str, Any]
@@ -19,7 +20,14 @@ def count(n: Numbers) -> str:
 def tests(n: Numbers) -> str:
     """How many tests and checks, and how many missed."""
     missed = f"{n['missed']:g} did not pass" if n["missed"] else "all pass"
-    return f"{count(n)}, {n['checks']:g} checks: {missed}."
+    checks = f"{n['checks']:g} check{'s' * (n['checks'] != 1)}: {missed}."
+    return f"{count(n)}, {checks}" if n["tests"] else checks
+
+
+def orders(n: Numbers) -> str:
+    """The orders of all tests that have one."""
+    several = span(n["least"], n["most"]) != span(n["least"], n["least"])
+    return f"Errors in the strain step fall with {'orders of' if several else 'order'} {span(n['least'], n['most'])}."
 
 
 def failed(n: Numbers) -> str:
@@ -43,9 +51,7 @@ REMARKS: dict[str, Words] = {
     Code.TESTS: tests,
     Code.UNJUDGED: lambda n: f"{count(n)}. Nothing is known of this path, so nothing is judged.",
     Code.EXACT: lambda n: f"{n['tests']:g} {'is' if n['tests'] == 1 else 'are'} exact in any number of steps.",
-    Code.ORDERS: lambda n: (
-        f"Errors in the strain step fall with orders from {n['least']:.2f} to {n['most']:.2f}."
-    ),
+    Code.ORDERS: orders,
     Code.FIRST_ORDER: lambda n: (
         "First order is expected of this material: it returns along the stress at the end of a step, and costs an "
         "order where the direction of the stress turns."
@@ -59,6 +65,7 @@ REMARKS: dict[str, Words] = {
     ),
     Code.PATH_ZERO: lambda n: f"{n['columns']}: zero in every row, as in plane strain, which is what is computed.",
     Code.PATH_UNUSED: lambda n: f"Not used of {n['file']}: {n['columns']}.",
+    Code.UNREAD: unread,
     Code.FAILED: failed,
     Code.AGAINST: lambda n: f"Errors are against: {n['source']}.",
     Code.AGAINST_OWN: lambda n: f"Errors are against: its own curve with {n['times']:g} times the steps.",

@@ -5,7 +5,7 @@ from typing import Any
 
 from mpm_verify.cases.objectivity.findings import ObjectivityRemark as Code
 from mpm_verify.reports.sentences.numbers import percent, span
-from mpm_verify.reports.sentences.remarks import Words, missed
+from mpm_verify.reports.sentences.remarks import Words, missed, unread
 
 Numbers = Mapping[str, Any]
 
@@ -137,6 +137,7 @@ REMARKS: dict[str, Words] = {
         "a volume strain of −a²."
     ),
     Code.NOT_UNIQUE: not_unique,
+    Code.UNREAD: unread,
     Code.PAPER: lambda n: "paper",
     Code.UNIT_SQUARE: lambda n: "paper: unit square; the small block is a hundredth of it",
     Code.GROWN: lambda n: "paper, section 3; grown from 0 in the first second",

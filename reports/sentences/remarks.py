@@ -28,6 +28,12 @@ def lead(examination: Examination) -> str:
     return " ".join(sentence(remark) for remark in examination.findings if not remark.group)
 
 
+def leads(examinations: Mapping[str, Examination]) -> list[str]:
+    """What came out of each, with its name where there are several."""
+    several = len(examinations) > 1
+    return [f"{name}: {lead(one)}" if several else lead(one) for name, one in examinations.items()]
+
+
 def notes(examination: Examination, group: str) -> list[str]:
     """What one should know of a group, a paragraph each."""
     return [sentence(remark) for remark in examination.findings if remark.group == group]
@@ -44,6 +50,14 @@ def parameter(examination: Examination, name: str) -> str:
     text = value if isinstance(value, str) else f"{value:.10g}"
     code = examination.origins.get(name)
     return text if code is None else f"{text} ({sentence(Remark(code))})"
+
+
+def unread(n: Numbers) -> str:
+    """Which figures there are not."""
+    return (
+        f"The curves in {n['files']} cannot be read, and their figures are left out; once they are deleted with their "
+        ".json files, the same command computes those runs again."
+    )
 
 
 def missed(n: Numbers) -> str:

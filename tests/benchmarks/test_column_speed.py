@@ -4,7 +4,7 @@ from dataclasses import replace
 from time import perf_counter
 
 import pytest
-from test_speed import paired, report
+from test_speed import paired, report, updates_a_second
 
 from mpm_verify.cases.column.execute import gravity, setup
 from mpm_verify.cases.column.measure import Measure
@@ -18,7 +18,7 @@ SIZES = {4: "1 thousand", 14: "12 thousand", 42: "111 thousand", 135: "1.1 milli
 EXTRAS = {
     "damping": {"damping": 0.05},
     "deviatoric smoothing": {"smoothing": "deviatoric"},
-    "UBCSAND": {"law": "ubcsand"},
+    "UBCSAND": {"material": "ubcsand"},
     "void memory off": {"void": False},
     "classical MPM": {"method": "mpm"},
     "GIMP": {"method": "gimp"},
@@ -48,7 +48,7 @@ def test_updates_of_the_column(benchmark, threads: int) -> None:
     use_threads(threads)
     model = moving(USUAL, SETTLED)
     benchmark.pedantic(advance, (model, gravity), rounds=400, warmup_rounds=20)
-    benchmark.extra_info["million updates a second"] = len(model.particles) / benchmark.stats.stats.median / 1e6
+    updates_a_second(benchmark, model)
 
 
 @pytest.mark.slow

@@ -2,7 +2,7 @@
 
 65 536 particles under an admissible compressive stress of sand and a random step of strain and rotation, from which
 about half of them fail under the strength of the column's sand. They stand in no order, so a branch is as hard to
-foretell as it can be; in a body neighbours do alike.
+foretell as it can be; in a body those beside each other do alike.
 """
 
 import time
@@ -94,13 +94,13 @@ def test_stress_updates(benchmark, name: str) -> None:
     benchmark.extra_info["its kernel alone"] = alone = speed(step, step.respond)
     print(f"its kernel alone: {alone:.1f}")
     if step.law.memory:
-        benchmark.extra_info["share of particles that yield"] = share = yielding(step)
-        print(f"share of particles that yield: {share:.2f}")
-        assert share > 0.1
+        benchmark.extra_info["fraction of particles that yield"] = fraction = yielding(step)
+        print(f"fraction of particles that yield: {fraction:.2f}")
+        assert fraction > 0.1
 
 
 def yielding(step: Step) -> float:
-    """Share of the particles whose history the step has changed."""
+    """Fraction of the particles whose history the step has changed."""
     step.prepare()
     step.update()
     return float((step.p.history != step.history).any(axis=1).mean())

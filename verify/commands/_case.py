@@ -11,7 +11,7 @@ from mpm_verify.solver.plugins import CASES, path
 from mpm_verify.verify.options import study_command, values
 
 Replicates = Annotated[int, typer.Option(help="Runs of each point, with the particles elsewhere in their cells.")]
-Quick = Annotated[bool, typer.Option("--quick", help="Few cells and particles: a verdict in seconds.")]
+Quick = Annotated[bool, typer.Option("--quick", help="Few cells and particles, and no page: a verdict in seconds.")]
 
 
 def add(app: typer.Typer, case: str) -> None:
@@ -19,13 +19,13 @@ def add(app: typer.Typer, case: str) -> None:
     module: Any = import_module(f"{CASES}.{case}.run")
 
     def command(asked: dict[str, list[str]], replicates: int, quick: bool, out: Path | None, **more: Any) -> int:
-        from mpm_verify.verify.run import Settings, command, conduct, named, usage
+        from mpm_verify.verify.run import Settings, conduct, study_of, usage
 
         with usage():
-            from mpm_verify.cases.harness.build import Asked, build
+            from mpm_verify.cases.harness.build import Asked
 
-            study = build(Asked(case, values(module.Run, asked), replicates, quick), command())
-        return conduct(study, Settings(named(study, out), **more))
+            study, folder = study_of(Asked(case, values(module.Run, asked), replicates, quick), out)
+        return conduct(study, Settings(folder, quick=quick, **more))
 
     command.__doc__ = (ast.get_docstring(ast.parse(path(CASES, case).read_text())) or "").partition("\n")[0]
     own = {"replicates": (Replicates, 1), "quick": (Quick, False)}

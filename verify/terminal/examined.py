@@ -3,12 +3,10 @@
 from pathlib import Path
 
 from mpm_verify.reports.frames import Record
-from mpm_verify.reports.sentences.remarks import lead
+from mpm_verify.reports.sentences.remarks import leads
 from mpm_verify.verify.terminal import checks
 
 
 def show(record: Record, page: Path | None) -> None:
     """Print the checks and what came out."""
-    found = record.analysis.more.examinations
-    words = [f"{name.rstrip(': ')}: {lead(one)}" if len(found) > 1 else lead(one) for name, one in found.items()]
-    checks.show(record, page, "\n".join(words))
+    checks.show(record, page, "\n".join(leads(record.analysis.more.examinations)))
