@@ -5,7 +5,7 @@ import shlex
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
@@ -33,6 +33,7 @@ class Settings:
     """Where and how a study is run and told. `show` prints it; the usual is that of the case."""
 
     folder: Path
+    _: KW_ONLY
     jobs: int | None = None
     threads: int = 1
     json_output: bool = False

@@ -23,7 +23,6 @@ class ColumnRemark(StrEnum):
     FINISHED = "column.finished"  # runs that came to their end
     FAILED = "column.failed"
     TO_DO = "column.to_do"
-    UNREADABLE = "column.unreadable"  # runs whose curves cannot be read
     CLAIMS = "column.claims"  # how many of the paper's sentences are reproduced
     CROWDED = "column.crowded"  # heaps too small for their material
     ALONE = "column.alone"  # numbers of the one run there is
@@ -87,8 +86,6 @@ def findings(
         found.append(Remark(ColumnRemark.FAILED, {"failed": done - len(ran)}))
     if done < len(study.runs):
         found.append(Remark(ColumnRemark.TO_DO, {"runs": len(study.runs) - done}))
-    if unread := sum(not one.curves for one in ran):
-        found.append(Remark(ColumnRemark.UNREADABLE, {"runs": unread}))
     if said:
         held = [claim.reproduced for claim in said]
         counts = {"reproduced": held.count(True), "not_reproduced": held.count(False), "open": held.count(None)}

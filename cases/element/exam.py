@@ -28,7 +28,6 @@ class ElementRemark(StrEnum):
     FAILED = "element.failed"
     AGAINST = "element.against"  # what errors are against: a source
     AGAINST_OWN = "element.against_own"  # the test's own curve with more steps
-    UNREADABLE = "element.unreadable"  # its stored curves cannot be read
     ROUND_OFF = "element.round_off"
     NO_ORDER = "element.no_order"
     ORDER = "element.order"
@@ -128,8 +127,6 @@ def notes(law: Any, one: ElementStudy) -> list[Remark]:
     if stopped:
         where = {"left": stopped.left, "step": stopped.step, "steps": stopped.steps}
         found.append(Remark(ElementRemark.FAILED, {"cause": stopped.cause, **where}, group))
-    if not one.curve:
-        found.append(Remark(ElementRemark.UNREADABLE, {}, group))
     if one.source:
         found.append(Remark(ElementRemark.AGAINST, {"source": one.source}, group))
     else:

@@ -34,8 +34,7 @@ def tables(collapse: ColumnAnalysis, store: Store, folder: Path) -> None:
             if not columns:
                 continue
             named = {axis: words.value(axis, getattr(run, axis)) for axis in collapse.study.axes}
-            if columns:
-                curves.append(pd.DataFrame(joined({"digest": run.digest}, named, measured(columns))))
+            curves.append(pd.DataFrame(joined({"digest": run.digest}, named, measured(columns))))
     pd.DataFrame(rows).to_csv(folder / "runs.csv", index=False)
     if curves:
         pd.concat(curves).to_csv(folder / "curves.csv", index=False, float_format="%.7g")

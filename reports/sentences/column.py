@@ -256,9 +256,6 @@ REMARKS: dict[str, Callable[[Mapping[str, Any]], str]] = {
     ColumnRemark.FINISHED: lambda n: f"{n['finished']:g} of {n['runs']:g} runs came to their end.",
     ColumnRemark.FAILED: lambda n: f"{n['failed']:g} failed; the table says where and why.",
     ColumnRemark.TO_DO: lambda n: f"{n['runs']:g} are still to be done: the same command goes on.",
-    ColumnRemark.UNREADABLE: lambda n: (
-        f"The stored curves of {n['runs']:g} cannot be read: they are in no figure and no sentence of the paper."
-    ),
     ColumnRemark.CLAIMS: claims,
     ColumnRemark.CROWDED: lambda n: (
         f"In the heap of {n['runs']:g} of them particles keep more than {n['limit']:g} times the volume of the space "

@@ -69,7 +69,6 @@ REMARKS: dict[str, Words] = {
     Code.FAILED: failed,
     Code.AGAINST: lambda n: f"Errors are against: {n['source']}.",
     Code.AGAINST_OWN: lambda n: f"Errors are against: its own curve with {n['times']:g} times the steps.",
-    Code.UNREADABLE: lambda n: "Its stored curves cannot be read, and are not drawn.",
     Code.ROUND_OFF: lambda n: (
         "The error is round-off at any number of steps: each step is exact here, and there is no order."
     ),
