@@ -17,7 +17,7 @@ import pytest
 
 from mpm_verify.cases.harness.shipped import shipped
 from mpm_verify.cases.harness.store import Store
-from mpm_verify.cases.mms import case as mms
+from mpm_verify.cases.mms import execute as mms
 from mpm_verify.cases.mms.run import NORMS, QUANTITIES, Result
 from mpm_verify.solver.plugins import available
 from mpm_verify.verify.main import application, main

@@ -20,6 +20,7 @@ Verification of the material point method: manufactured solutions, observed orde
 
 Commands (verify COMMAND --help says more):
 {commands}
+  OWN.py       A case of your own, from its file.
 
 Options: -h, --help, --version, --install-completion, --show-completion
 
@@ -78,6 +79,9 @@ def application(asked: str = "") -> object:
                       context_settings={"help_option_names": ["-h", "--help"]})  # fmt: skip
     app.callback()(root)
     known = files()
+    if asked.endswith(".py"):
+        import_module("mpm_verify.verify.commands._case").add(app, asked)
+        return app
     for name in [asked] if asked in known else known:
         if known[name].startswith(CASES):
             import_module("mpm_verify.verify.commands._case").add(app, name)
