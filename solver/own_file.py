@@ -2,11 +2,13 @@
 
 The file and the modules beside it live in a package of their own in sys.modules, named by the file's path, so two files
 whose helpers have the same name do not share them. Nothing is read from or written to a __pycache__ there. The file is
-executed as a program is: run none that you do not trust.
+executed as a program is: run none that you do not trust. From then on os._exit is an exception in this process, as
+sys.exit is: a study must not end by it, least of all as if it had passed.
 """
 
 import builtins
 import hashlib
+import os
 import sys
 import traceback
 from collections.abc import Callable
@@ -87,6 +89,20 @@ def plain(value: Any, family: str, seen: set[int]) -> str:
     return repr(sorted((key, text) for key, text in held if text))
 
 
+def without_exit() -> None:
+    """Make os._exit an exception in this process; its forks, which end by it, keep it."""
+    leave, owner = os._exit, os.getpid()
+
+    def ended(status: int) -> None:
+        if os.getpid() != owner:
+            leave(status)
+        raise SystemExit(status)
+
+    if not hasattr(os._exit, "own_file"):
+        vars(ended)["own_file"] = True
+        vars(os)["_exit"] = ended
+
+
 def guarded(path: Path, action: Callable[[], Any]) -> Any:
     """Whatever the user's code raises becomes one line with the line of the file."""
     try:
@@ -145,6 +161,7 @@ def _executed(path: Path, file: Path, files: dict[str, bytes]) -> ModuleType:
     spec = spec_from_loader(name, Loader(name, str(file)))
     assert spec is not None
     module = sys.modules[name] = module_from_spec(spec)
+    without_exit()
     guarded(path, lambda: Loader(name, str(file)).exec_module(module))
     return module
 

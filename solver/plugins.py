@@ -5,8 +5,9 @@ makes a class of it in its own way, `_own.load(path)`; of the others the file ho
 """
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import Field, fields, is_dataclass
+from difflib import get_close_matches
 from importlib import import_module
 from math import isfinite
 from pathlib import Path
@@ -51,9 +52,12 @@ CONTRACTS = {  # what the class of a kind has at least
 
 
 def available(package: str) -> list[str]:
-    """Names of the plug-ins in a package such as `solver.basis`, found without importing anything."""
+    """Names of the plug-ins in a package such as `solver.basis`, found without importing anything.
+
+    Of cases, the folders that hold what computes a run: the harness has a `case.py` too, which is the contract.
+    """
     files = (file.stem for file in folder(package).glob("*.py") if not file.stem.startswith("_"))
-    return sorted([*files, *(file.parent.name for file in folder(package).glob("*/case.py"))])
+    return sorted([*files, *(file.parent.name for file in folder(package).glob("*/execute.py"))])
 
 
 def folder(package: str) -> Path:
@@ -74,8 +78,15 @@ def load(package: str, name: str) -> Any:
         return import_module(f"{package}._own").load(Path(name)) if own else own_class(package, Path(name))
     if name not in available(package):
         choices = ", ".join(available(package)) + (", or give a file: path/to/own.py" if package in CONTRACTS else "")
-        raise ValueError(f"no {KINDS.get(package, 'plug-in')} {name!r}; choose from {choices}")
+        near = meant(name, available(package))
+        raise ValueError(f"no {KINDS.get(package, 'plug-in')} {name!r}{near}; choose from {choices}")
     return getattr(import_module(f"{package}.{name}"), camel(name))
+
+
+def meant(word: str, known: Iterable[str]) -> str:
+    """` (did you mean cpdi?)` where a known name is near to a word that was typed, otherwise nothing."""
+    near = get_close_matches(word.lower(), list(known), 1)
+    return f" (did you mean {near[0]}?)" if near else ""
 
 
 def own_class(package: str, path: Path) -> Any:
@@ -145,7 +156,8 @@ def create(package: str, specification: str) -> Any:
     for item in filter(None, rest.split(",")):
         key, _, value = item.partition("=")
         if key not in allowed:
-            raise ValueError(f"{name} has no parameter {key!r}; it has {', '.join(allowed) or 'none'}")
+            near = meant(key, allowed)
+            raise ValueError(f"{name} has no parameter {key!r}{near}; it has {', '.join(allowed) or 'none'}")
         field = allowed[key]
         if field.name in given:
             raise ValueError(f"{name}: {key} is given twice")

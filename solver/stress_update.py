@@ -22,4 +22,4 @@ Stress = Literal["usl", "musl", "usf"]
 def check_stress_update(word: str) -> None:
     """Raise ValueError for a word that is no order."""
     if word not in get_args(Stress):
-        raise ValueError(f"no stress order {word!r}; choose from {', '.join(get_args(Stress))}")
+        raise ValueError(f"no stress update {word!r}; choose from {', '.join(get_args(Stress))}")

@@ -28,6 +28,7 @@ from numpy.typing import NDArray
 from mpm_verify.solver._jit import BLOCK, F1, I1, f8, flag, function_type, i8, kernel
 from mpm_verify.solver.failure import FailureKind
 from mpm_verify.solver.layout import Layout
+from mpm_verify.solver.promise import Promise as Promise
 from mpm_verify.solver.state import Floats, Grid, Particles
 
 #         x   F  domain ox  oy 1/dx nx  ny  x0  x1  y0  y1 table node
@@ -35,18 +36,6 @@ FILL = flag(F1, F1, F1, f8, f8, f8, i8, i8, f8, f8, f8, f8, F1, I1)
 Fill = function_type(FILL)
 Refusal = tuple[FailureKind, dict[str, float]]  # and its numbers, see Failure
 Place = Callable[[Floats], Floats]
-
-
-@dataclass(frozen=True)
-class Promise:
-    """How the error of u falls on refinement: with an `order`, or None; then it `stalls`, or else it grows.
-
-    `source`: who says so, before any run of ours.
-    """
-
-    order: float | None
-    stalls: bool = False
-    source: str = ""
 
 
 @dataclass(frozen=True)

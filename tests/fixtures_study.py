@@ -2,11 +2,13 @@
 
 from contextlib import AbstractContextManager
 from pathlib import Path
+from typing import Any
 from unittest.mock import patch
 
 import numpy as np
 
 from mpm_verify.cases.harness import identity
+from mpm_verify.cases.harness.build import Asked, build
 from mpm_verify.cases.harness.store import Arrays, Store
 from mpm_verify.cases.harness.study import QuantityPlan, Study
 from mpm_verify.cases.judging.order import Expectation
@@ -70,7 +72,7 @@ def _no_sources(*_: object) -> str:
     return "synthetic"
 
 
-def _declared(methods: tuple[str, ...]) -> tuple[QuantityPlan, ...]:
+def _declared(methods: tuple[str, ...]) -> tuple[QuantityPlan[Run], ...]:
     found = []
     for method, ppc in U_RMS:
         for quantity in QUANTITIES if method in methods else ():
@@ -78,9 +80,22 @@ def _declared(methods: tuple[str, ...]) -> tuple[QuantityPlan, ...]:
                 judged = quantity == "u" and norm == "rms" and ppc in HALF_PPC
                 expected = {"cpdi": SECOND if ppc == 4 else Expectation(2.0, source=SECOND.source), "mpm": NONE}[method]
                 known = quantity == "u" and norm == "rms"
-                run = Run(method, "axis_aligned", "neo_hookean", CELLS[0], ppc, 0.4)
-                found.append(QuantityPlan(run, quantity, norm, judged, expected if known else None))
+                of = expected if known else None
+                found.append(plan(method, "axis_aligned", ppc, quantity, norm, judged, of))
     return tuple(found)
+
+
+def plan(
+    method: str, solution: str, ppc: int, quantity: str, norm: str, judged: bool, expectation: Expectation | None
+) -> QuantityPlan[Run]:
+    """What is declared of a quantity of a refinement from 8 cells, with the material of this module."""
+    run = Run(method, solution, "neo_hookean", CELLS[0], ppc, 0.4)
+    return QuantityPlan(run, quantity, norm, judged, expectation)
+
+
+def built(replicates: int = 1, **axes: Any) -> Study[Run]:
+    """The study of `verify mms` with these values of its axes, a sequence each."""
+    return build(Asked("mms", axes, replicates), "verify mms", "t")
 
 
 def _result(run: Run) -> Result:

@@ -12,21 +12,23 @@ import numpy as np
 import pandas as pd
 import pytest
 from jsonschema import Draft202012Validator
-from mpm_verify.cases.mms.sweep import MOST, Sweep, build, offsets
 
-from mpm_verify.cases.harness.axes import crossed, level, middle, particle_axes, position_axes, time_axes
+from mpm_verify.cases.harness.axes import UNDONE, crossed, level, middle, particle_axes, position_axes, time_axes
+from mpm_verify.cases.harness.build import Asked, named
 from mpm_verify.cases.harness.refinement import MOST, collect, offsets
 from mpm_verify.cases.harness.runner import InProcess, pending, run_study
 from mpm_verify.cases.harness.store import Store
-from mpm_verify.cases.harness.study import QuantityPlan, Study
+from mpm_verify.cases.harness.study import Study
 from mpm_verify.cases.harness.verdicts import findings, refinement
 from mpm_verify.cases.judging.order import Expectation, Outcome
+from mpm_verify.cases.judging.records import Ended
 from mpm_verify.cases.mms.run import NORMS, QUANTITIES, Result, Run
 from mpm_verify.reports import words
-from mpm_verify.reports.export.document import SCHEMA
+from mpm_verify.reports.export.document import schema
 from mpm_verify.reports.figures.style import look
 from mpm_verify.reports.frames import Record
-from mpm_verify.reports.pages.mms import render
+from mpm_verify.reports.pages.mms import page
+from mpm_verify.reports.sentences import verdicts
 from mpm_verify.solver.failure import Failure, FailureKind
 from mpm_verify.verify.main import main
 
@@ -79,7 +81,7 @@ def test_more_replicates_keep_the_places_of_fewer(few: int) -> None:
 
 
 def test_runs_of_each_axis() -> None:
-    study = build(Sweep(cells=(8, 16), ppc=(4, 9), times=(0.2, 0.1), replicates=3), "verify", "t")
+    study = fixtures.built(3, cells=(8, 16), ppc=(4, 9), courant=(0.4, 0.2, 0.1))
     assert len(set(study.runs)) == len(study.runs) == 4 + 4 + 4 * 2  # the run with half the time step is of both
     assert {(r.cells, r.offset) for r in study.runs if r.courant < 0.4} == {(16, (0.0, 0.0))}
     assert sorted(r.courant for r in study.runs if r.cells == 16 and r.ppc == 9 and r.offset == (0, 0)) == [
@@ -94,29 +96,29 @@ def test_runs_of_each_axis() -> None:
 
 
 def test_series_keep_the_axes_apart() -> None:
-    study = build(Sweep(("cpdi", "mpm"), cells=(8, 16), ppc=(4, 9), times=(0.2, 0.1), replicates=3), "verify", "t")
+    study = fixtures.built(3, method=("cpdi", "mpm"), cells=(8, 16), ppc=(4, 9), courant=(0.4, 0.2, 0.1))
     series = collect(tuple(reversed(study.runs)))
-    assert [s.head for s in series] == [(m, "axis_aligned", p) for m in ("mpm", "cpdi") for p in (4, 9)]
+    assert [(s.first.method, s.first.ppc) for s in series] == [(m, p) for m in ("mpm", "cpdi") for p in (4, 9)]
     for s in series:
         assert [(r.cells, r.courant, r.offset) for r in s.runs] == [(8, 0.4, (0, 0)), (16, 0.4, (0, 0))]
         assert [len(runs) for runs in s.replicates] == [3, 3]
         assert all(runs[0] == run for runs, run in zip(s.replicates, s.runs, strict=True))
         assert [(r.cells, r.courant) for r in s.times] == [(16, 0.4), (16, 0.2), (16, 0.1)]
         assert s.halved == s.times[1]
-    declared = QuantityPlan("mpm", "axis_aligned", 9, "u", "rms", False, None)
+    declared = fixtures.plan("mpm", "axis_aligned", 9, "u", "rms", False, None)
     assert refinement(declared, study.runs) == list(series[1].runs)
 
 
 def test_an_offset_survives_the_store(tmp_path: Path) -> None:
-    study = build(Sweep(cells=(8,), ppc=(4,), replicates=4), "verify", "t")
+    study = fixtures.built(4, cells=(8,), ppc=(4,))
     Store(tmp_path).create(study)
     assert Store(tmp_path).study().runs == study.runs
     assert [r.digest for r in Store(tmp_path).study().runs] == [r.digest for r in study.runs]
 
 
-@pytest.mark.parametrize("changes", [{"times": (0.2,)}, {"replicates": 2}])
-def test_another_axis_is_another_folder(changes: dict[str, object]) -> None:
-    assert replace(Sweep(), **changes).name != Sweep().name
+@pytest.mark.parametrize("asked", [Asked("mms", {"courant": (0.4, 0.2)}), Asked("mms", {}, 2)])
+def test_another_axis_is_another_folder(asked: Asked) -> None:
+    assert named(asked) != named(Asked("mms", {}))
 
 
 # ---- what is made of the errors
@@ -189,8 +191,8 @@ def test_replicates_are_one_level_of_the_verdict() -> None:
     runs, known = scattered()
     half = replace(BASE, cells=64, courant=0.2)
     known[half.digest] = result(half, 64**-2.0)
-    declared = QuantityPlan("cpdi", "axis_aligned", 4, "u", "rms", True, Expectation(2.0))
-    (found,) = findings(Study("t", "t", "c", (*runs, half), (declared,)), known)
+    declared = fixtures.plan("cpdi", "axis_aligned", 4, "u", "rms", True, Expectation(2.0))
+    (found,) = findings(Study("t", "t", "c", (*runs, half), (declared,), case="mms"), known)
     assert [len(each.errors) for each in found.levels] == [4] * 4
     assert found.levels[0].errors[0] == 1 / 64  # the usual place first: the run with half the time step is there too
     assert found.verdict.outcome is Outcome.PASS
@@ -201,16 +203,26 @@ def test_replicates_are_one_level_of_the_verdict() -> None:
 
 def test_a_level_without_one_of_its_replicates() -> None:
     runs, known = scattered((8,))
-    errors, why = level(runs, known, "u", "rms")
-    assert (len(errors), why) == (4, "")
+
+    def ended(results: dict[str, Result]) -> str:
+        """Why the level has no error, in words."""
+        _, failure, replicate = level(runs, results, "u", "rms")
+        assert failure is not None
+        return verdicts.ended(Ended(1 / 8, failure, replicate))
+
+    errors, *why = level(runs, known, "u", "rms")
+    assert (len(errors), why) == (4, [None, 0])
     early = {**known, runs[1].digest: lost(runs[1], 0)}
-    assert level(runs, early, "u", "rms") == (errors[:1] + errors[2:], "")  # its domains do not fit: left out
+    assert level(runs, early, "u", "rms") == (errors[:1] + errors[2:], None, 0)  # its domains do not fit: left out
     late = {**known, runs[1].digest: lost(runs[1], 7)}
-    assert level(runs, late, "u", "rms") == ((), "det F <= 0 at step 7, replicate 2")
+    assert level(runs, late, "u", "rms") == ((), Failure(FailureKind.INVERTED, 7), 1)
+    assert ended(late) == "det F ≤ 0 at step 7, replicate 2"
     usual = {**known, runs[0].digest: lost(runs[0], 0)}
-    assert level(runs, usual, "u", "rms") == ((), "det F <= 0 at step 0")
+    assert level(runs, usual, "u", "rms") == ((), Failure(FailureKind.INVERTED, 0), 0)
+    assert ended(usual) == "det F ≤ 0 at step 0"
     missing = {digest: r for digest, r in known.items() if digest != runs[3].digest}
-    assert level(runs, missing, "u", "rms") == ((), "not run yet, replicate 4")
+    assert level(runs, missing, "u", "rms") == ((), UNDONE, 3)
+    assert ended(missing) == "not run yet, replicate 4"
 
 
 def test_crossings_are_per_particle() -> None:
@@ -223,7 +235,7 @@ def test_crossings_are_per_particle() -> None:
 
 def test_positions_scatter_and_stay_second_order(tmp_path: Path) -> None:
     """Other places give other errors, by some percent; a second call runs only the places that are new."""
-    study = build(Sweep(cells=(8, 16), ppc=(4,), replicates=3), "verify", "t")
+    study = fixtures.built(3, cells=(8, 16), ppc=(4,))
     store = Store(tmp_path)
     store.create(study)
     known = run_study(study, store, InProcess(), 1)
@@ -232,19 +244,19 @@ def test_positions_scatter_and_stay_second_order(tmp_path: Path) -> None:
         assert 1.002 < high / low < 1.2
     coarse, fine = (middle(errors) for errors in axis.errors)
     assert 1.8 < log(coarse / fine) / log(2) < 2.2
-    more = build(Sweep(cells=(8, 16), ppc=(4,), replicates=4), "verify", "t")
+    more = fixtures.built(4, cells=(8, 16), ppc=(4,))
     assert [run.offset for run in pending(more, store)] == [offsets(4)[3]] * 2
 
 
 def test_the_command(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     monkeypatch.chdir(tmp_path)
     arguments = ["--cells", "8,16", "--ppc", "1,4", "--courant", "0.4,0.2,0.1", "--replicates", "2"]
-    monkeypatch.setattr(sys, "argv", ["verify", "mms", *arguments, "--jobs", "1", "--out", "study", "--json"])
+    monkeypatch.setattr(sys, "argv", ["verify", "mms", *arguments, "--jobs", "1", "--out", "study", "--json", "--page"])
     with pytest.raises(SystemExit) as ended:
         main()
     assert ended.value.code == 3
     document = json.loads(capsys.readouterr().out)
-    Draft202012Validator(json.loads(SCHEMA.read_text())).validate(document)
+    Draft202012Validator(schema("mms")).validate(document)
     axes = document["axes"]
     assert [(a["ppc"], a["cells"], a["courants"]) for a in axes["time"]] == [(p, 16, [0.4, 0.2, 0.1]) for p in (1, 4)]
     assert [(a["cells"], a["ppc"]) for a in axes["particles"]] == [(8, [1, 4]), (16, [1, 4])]
@@ -252,8 +264,8 @@ def test_the_command(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixt
     assert all(len(v["crossings"]) == 2 for v in document["shown"] + document["verdicts"])
     assert {tuple(run["offset"]) for run in document["runs"]} == set(offsets(2))
     assert all(run["gap"] > 0 for run in document["runs"])
-    page = (tmp_path / "study" / "report.html").read_text()
-    assert all(f'<h2 id="{name}">' in page for name in ("time", "particles", "position"))
+    text = (tmp_path / "study" / "report.html").read_text()
+    assert all(f'<h2 id="{name}">' in text for name in ("time", "particles", "position"))
     figures = {file.name for file in (tmp_path / "study" / "figures").iterdir()}
     wanted = {
         f"{name}.{kind}" for name in ("time_step", "particles_cpdi", "position") for kind in ("svg", "pdf", "png")
@@ -266,17 +278,17 @@ def test_the_command(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixt
 
 def test_an_axis_with_one_value_has_no_section(tmp_path: Path) -> None:
     runs = tuple(replace(BASE, cells=cells) for cells in (8, 16, 32))
-    page = rendered(tmp_path, runs, lambda run: run.cells**-2.0)
-    assert not any(f'<h2 id="{name}">' in page for name in ("time", "particles", "position"))
+    text = rendered(tmp_path, runs, lambda run: run.cells**-2.0)
+    assert not any(f'<h2 id="{name}">' in text for name in ("time", "particles", "position"))
     names = {file.stem for folder in ("figures", "tables") for file in (tmp_path / folder).iterdir()}
     assert not {"time_step", "particles_cpdi", "position", "particles_per_cell", "stalls"} & names
 
 
 def test_two_time_steps_are_a_table_without_a_figure(tmp_path: Path) -> None:
     runs = (BASE, replace(BASE, courant=0.2))
-    page = rendered(tmp_path, runs, lambda run: 1e-3 * (1 + run.courant))
-    assert '<h2 id="time">' in page
-    assert "14.3 %" in page  # (1.4 - 1.2) / 1.4
+    text = rendered(tmp_path, runs, lambda run: 1e-3 * (1 + run.courant))
+    assert '<h2 id="time">' in text
+    assert "14.3 %" in text  # (1.4 - 1.2) / 1.4
     assert not (tmp_path / "figures" / "time_step.svg").exists()
 
 
@@ -305,9 +317,9 @@ def test_tables_hold_the_numbers_of_the_axes(tmp_path: Path) -> None:
 def test_errors_of_the_page_are_those_that_are_judged(tmp_path: Path) -> None:
     """The mean over the places, not the usual place."""
     runs, _ = scattered((8, 16, 32))
-    page = rendered(tmp_path, runs, lambda run: run.cells**-2.0 * (1.0 if run.offset == (0, 0) else 1.1))
-    assert words.sci(1.1**0.75 / 64) in page
-    assert "of the geometric mean over 4 runs" in page
+    text = rendered(tmp_path, runs, lambda run: run.cells**-2.0 * (1.0 if run.offset == (0, 0) else 1.1))
+    assert words.sci(1.1**0.75 / 64) in text
+    assert "of the geometric mean over 4 runs" in text
 
 
 @pytest.mark.slow
@@ -315,8 +327,8 @@ def test_seven_methods_stay_readable(tmp_path: Path) -> None:
     """Tables of many rows are folded, and every method has a look of its own."""
     names = ("mpm", "gimp", "cpgimp", "cpdi", "cpdi2", "bspline2", "bspline3")
     runs = tuple(replace(BASE, method=m, ppc=p, cells=n) for m in names for p in (4, 9) for n in (8, 16, 32))
-    page = rendered(tmp_path, runs, lambda run: run.cells**-2.0)
-    assert "Error of u in rms against the particles per cell: 21 rows" in page
+    text = rendered(tmp_path, runs, lambda run: run.cells**-2.0)
+    assert "Error of u in rms against the particles per cell: 21 rows" in text
     looks = {(look(names, m, p).colour, look(names, m, p).marker) for m in names for p in (4, 9)}
     assert len(looks) == 7
     assert len({look(names, "mpm", p).line for p in (1, 4, 9, 16)}) == 4
@@ -325,12 +337,12 @@ def test_seven_methods_stay_readable(tmp_path: Path) -> None:
 def rendered(folder: Path, runs: tuple[Run, ...], error: Errors) -> str:
     """The page of a study with these runs."""
     heads = dict.fromkeys((run.method, run.ppc) for run in runs)
-    declared = tuple(QuantityPlan(m, "axis_aligned", p, "u", "rms", False, None) for m, p in heads)
-    study = Study("t", "t", "verify mms", runs, declared)
+    declared = tuple(fixtures.plan(m, "axis_aligned", p, "u", "rms", False, None) for m, p in heads)
+    study = Study("t", "t", "verify mms", runs, declared, case="mms")
     store = Store(folder)
     store.create(study)
     known = results(runs, error)
     for each in known.values():
         store.put(each, {})
     record = Record(store, study, known, earlier=False)
-    return render(folder, record=record).read_text()
+    return page(record).read_text()

@@ -13,22 +13,20 @@ import pytest
 from selenium import webdriver
 from selenium.webdriver.chrome.service import Service
 
-from mpm_verify.cases.column import sweep as column_sweep
-from mpm_verify.cases.element import exam as material_exam
-from mpm_verify.cases.element.paths import TESTS
+from mpm_verify.cases.harness.analysis import Analysis
+from mpm_verify.cases.harness.build import Asked, build
+from mpm_verify.cases.harness.checks import Check
 from mpm_verify.cases.harness.runner import InProcess, run_study
 from mpm_verify.cases.harness.store import Store
-from mpm_verify.cases.objectivity import block as objectivity_block
+from mpm_verify.cases.harness.study import Study
+from mpm_verify.cases.harness.study_file import study_of
+from mpm_verify.cases.objectivity import execute as objectivity_execute
 from mpm_verify.cases.objectivity import rates as objectivity_kinematic
+from mpm_verify.cases.objectivity.axes import Block
 from mpm_verify.cases.objectivity.exact import rotated
-from mpm_verify.cases.objectivity.exam import examine
 from mpm_verify.cases.objectivity.rates import STEPS
-from mpm_verify.cases.objectivity.turning_block import Block
-from mpm_verify.reports.pages import column as column_page
-from mpm_verify.reports.pages import element as material_page
-from mpm_verify.reports.pages import objectivity as objectivity_page
-from mpm_verify.reports.pages.mms import render
-from mpm_verify.solver.plugins import create
+from mpm_verify.reports.frames import Record, read
+from mpm_verify.verify.run import page_of
 
 CHROMIUM, DRIVER = Path("/usr/bin/chromium"), Path("/usr/bin/chromedriver")
 WIDTHS = (1280, 360)
@@ -69,14 +67,14 @@ def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[webdriver.Chro
 def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The report of a whole study."""
     with fixtures.sources():
-        return render(fixtures.make(tmp_path_factory.mktemp("study")))
+        return page_of(read(fixtures.make(tmp_path_factory.mktemp("study"))))
 
 
 @pytest.fixture(scope="module")
 def unfinished(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The report of a study with runs still to be done."""
     with fixtures.sources():
-        return render(fixtures.make(tmp_path_factory.mktemp("study"), skip=20))
+        return page_of(read(fixtures.make(tmp_path_factory.mktemp("study"), skip=20)))
 
 
 def console(browser: webdriver.Chrome) -> list[str]:
@@ -118,7 +116,24 @@ def test_figures_take_the_width_of_a_phone(browser: webdriver.Chrome, page: Path
 # ---- examinations: a function that makes the page, and how many images it has
 
 
-def closed_form(block: Block) -> tuple[dict[str, Any], str]:
+def ran(folder: Path, study: Study) -> Record:
+    """A study run in this process."""
+    store = Store(folder, study.case)
+    store.create(study)
+    return Record(store, study, run_study(study, store, InProcess(), 1), earlier=False)
+
+
+def spoilt(record: Record, spoil: Callable[[tuple[Check, ...]], tuple[Check, ...]]) -> Record:
+    """The record with other checks in its one Examination."""
+    found = record.analysis
+    ((name, one),) = found.more.examinations.items()
+    other = replace(one, checks=spoil(one.checks))
+    more = replace(found.more, examinations={name: other})
+    vars(record)["analysis"] = Analysis(found.findings, other.checks, more)
+    return record
+
+
+def closed_form(block: Block, tick: object) -> tuple[dict[str, Any], None]:
     """In place of a run of the block: its closed form with a ripple."""
     t = np.linspace(0.02, 2, 100)
     angle = np.pi / 2 * np.maximum(0, t - 1)
@@ -128,40 +143,35 @@ def closed_form(block: Block) -> tuple[dict[str, Any], str]:
     X, Y = np.meshgrid(np.linspace(0.1, 0.9, 5), np.linspace(0.1, 0.9, 5))
     mean = {"t": t, "angle": angle, "xx": xx, "yy": yy, "zz": xx, "xy": xy, **own}
     field = {"X": X.ravel(), "Y": Y.ravel(), **{name: np.ones(25) for name in ("own_xx", "own_yy", "own_xy")}}
-    return {"mean": mean, "field": field}, ""
+    return {"mean": mean, "field": field}, None
 
 
 def objectivity(folder: Path) -> Path:
     """The page of `verify objectivity`, with a check that failed and one without a number."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(objectivity_block, "execute", closed_form)
+        patch.setattr(objectivity_execute, "turn", closed_form)
         patch.setattr(objectivity_kinematic, "order_errors", lambda rate, counts=STEPS: 1 / np.array(counts) ** 2.0)
         patch.setattr(objectivity_kinematic, "simple_shear", lambda rate, gamma, steps: np.ones(2) * gamma / steps)
-        found = examine(Block(), InProcess(), "verify objectivity --cells 8 --out " + "/a/long/path" * 9)
-    checks = list(found.checks)
-    checks[:2] = [replace(checks[0], found=np.nan), replace(checks[1], name="a stress_" + "with_a_long_name_" * 5)]
-    return objectivity_page.page(folder, replace(found, checks=tuple(checks)))
+        study = build(Asked("objectivity", {}), "verify objectivity --cells 8 --out " + "/a/long/path" * 9)
+        record = ran(folder, study)
+    named = "a stress_" + "with_a_long_name_" * 5
+    return page_of(spoilt(record, lambda c: (replace(c[0], found=np.nan), replace(c[1], name=named), *c[2:])))
 
 
 def material(folder: Path) -> Path:
     """Three element tests of UBCSAND in few steps, with a check that misses."""
-    law = create("mpm_verify.solver.material", "ubcsand")
-    tests = [TESTS[name] for name in ("biaxial", "shear_volume", "cyclic_shear")]
-    found = material_exam.examine("ubcsand", law, tests, 5e3, 12, "verify material ubcsand")
-    missed = replace(found.checks[0], found=9.0, way="at most")
-    return material_page.page(folder, replace(found, checks=(*found.checks, missed)))
+    tests = ["biaxial", "shear_volume", "cyclic_shear", "properties"]
+    axes = {"material": ["ubcsand"], "test": tests, "steps": [12]}
+    record = ran(folder, build(Asked("element", axes), "verify material ubcsand"))
+    return page_of(spoilt(record, lambda checks: (*checks, replace(checks[0], found=9.0, way="at most"))))
 
 
 def column(folder: Path) -> Path:
     """Four small columns, one of them lost, in two families; animations too."""
-    run = {"cells": 4, "duration": 0.4, "law": "drucker_prager"}
+    run = {"cells": 4, "duration": 0.4, "material": "drucker_prager"}
     axes = {"ppc": [1, 4, 9, 16], "limit": [0.5, 9.0]}
     content = {"title": "Columns", "words": ["What it is for."], "run": run, "sweep": axes}
-    study = column_sweep.build("columns", content, "verify sweep " + "/a/long/path" * 9)
-    store = Store(folder, "column")
-    store.create(study)
-    run_study(study, store, InProcess(), 1)
-    return column_page.page(folder)[1]
+    return page_of(ran(folder, study_of("columns", content, "verify sweep " + "/a/long/path" * 9)))
 
 
 EXAMINED: dict[str, tuple[Callable[[Path], Path], int]] = {

@@ -335,7 +335,7 @@ def test_report_makes_the_page_of_an_examination_again(
     page = tmp_path / "out" / "report.html"
     first = page.read_bytes()
     page.unlink()
-    monkeypatch.setattr("mpm_verify.cases.element.case.execute", lambda *_: pytest.fail("computed"))
+    monkeypatch.setattr("mpm_verify.cases.element.execute.execute", lambda *_: pytest.fail("computed"))
     capsys.readouterr()
     code, out, err = ask(["report", str(tmp_path / "out")], monkeypatch, capsys)
     assert (code, out, err) == (0, f"report: {page}\n", "")

@@ -14,8 +14,8 @@ import pytest
 
 from mpm_verify.cases.judging.order import Expectation, Level, Outcome, Verdict, judge
 from mpm_verify.cases.judging.records import ReasonCode
-from mpm_verify.cases.mms import case as mms
-from mpm_verify.cases.mms.case import Comparison
+from mpm_verify.cases.mms import execute as mms
+from mpm_verify.cases.mms.execute import Comparison
 from mpm_verify.cases.mms.expectations import expected
 from mpm_verify.cases.mms.norms import compare, new_shares
 from mpm_verify.cases.mms.run import Result, Run

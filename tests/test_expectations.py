@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
+import fixtures_study as fixtures
 import pytest
 from typer.testing import CliRunner
 
-from mpm_verify.cases.harness.build import Asked, build
 from mpm_verify.cases.mms.deviations import DEVIATIONS, SHOWN, SMALL_AMPLITUDE
 from mpm_verify.cases.mms.expectations import (
     JUDGED_PPC,
@@ -116,7 +116,9 @@ def test_where_nothing_is_expected() -> None:
 
 
 def test_an_own_solution_has_the_order_of_its_file(tmp_path: Path) -> None:
+    """Its file names none: it is the method's own, where the method keeps it."""
     assert of("cpdi", OWN).source == "declared by the method"
+    assert of("cpdi", OWN).order == 2
     assert of("mpm", OWN) is None  # particles cross cells
     declares = tmp_path / "declares.py"
     declares.write_text(Path(OWN).read_text().replace('"speed": 100}', '"speed": 100, "order": 1.5}'))
@@ -125,7 +127,7 @@ def test_an_own_solution_has_the_order_of_its_file(tmp_path: Path) -> None:
 
 
 def test_only_u_in_rms_is_judged() -> None:
-    study = build(Asked("mms", {"cells": (8, 16, 32, 64), "ppc": (4,)}), "verify", "x")
+    study = fixtures.built(cells=(8, 16, 32, 64), ppc=(4,))
     assert [(d.quantity, d.norm) for d in study.plans if d.judged] == [("u", "rms")]
     assert {d.quantity for d in study.plans if d.expectation} == set(QUANTITIES)
     assert [r.courant for r in study.runs].count(0.2) == 1  # half the time step, for what is judged
@@ -149,12 +151,12 @@ def test_a_comparison_of_two() -> None:
 def test_the_table_and_its_json() -> None:
     import json
 
-    runner = CliRunner()
-    text = runner.invoke(application(), ["expectations", "--solution", "bar"]).output
+    runner, app = CliRunner(), application("expectations")
+    text = runner.invoke(app, ["expectations", "--solution", "bar"]).output
     assert "diverges" in text
     assert "2 (1.8\N{EN DASH}2.3)" in text
-    entries = json.loads(runner.invoke(application(), ["expectations", "--method", "mpm", "--json"]).output)
+    entries = json.loads(runner.invoke(app, ["expectations", "--method", "mpm", "--json"]).output)
     assert len(entries) == len(DEVIATIONS) * len(QUANTITIES)
     assert {e["expected"] for e in entries if e["solution"] == "bar"} == {"diverges"}
-    refused = runner.invoke(application(), ["expectations", "--method", "none"])
+    refused = runner.invoke(app, ["expectations", "--method", "none"])
     assert refused.exit_code != 0

@@ -4,11 +4,12 @@ from dataclasses import replace
 from math import sqrt
 from typing import Any
 
+import fixtures_study as fixtures
 import numpy as np
 import pytest
-from mpm_verify.cases.mms.sweep import Sweep, build
 
-from mpm_verify.cases.mms import case
+from mpm_verify.cases.harness.build import Asked, named
+from mpm_verify.cases.mms import execute as case
 from mpm_verify.cases.mms.graded import Bounded, Plan, build_graded, cost_of, factor, kind, savings
 from mpm_verify.cases.mms.packing import counts, full_cells, outline
 from mpm_verify.cases.mms.run import NORMS, QUANTITIES, Result, Run
@@ -113,21 +114,21 @@ def test_along_an_axis_without_change_the_layout_is_uniform() -> None:
 )
 def test_refused_in_one_line(specification: str, words: str) -> None:
     with pytest.raises(ValueError, match=words):
-        build(Sweep(layout=specification), "", "")
+        fixtures.built(layout=(specification,))
 
 
 def test_a_ring_is_refused_before_anything_runs() -> None:
     with pytest.raises(ValueError, match="rectangles along the axes; choose uniform"):
-        build(Sweep(solution="expanding_ring", layout="graded"), "", "")
-    assert build(Sweep(solution="expanding_ring"), "", "").runs
+        fixtures.built(solution=("expanding_ring",), layout=("graded",))
+    assert fixtures.built(solution=("expanding_ring",)).runs
 
 
 def test_a_sweep_names_its_layout_and_expects_nothing_of_it() -> None:
-    study = build(Sweep(layout="graded:contrast=2.0"), "", "")
+    study = fixtures.built(layout=("graded:contrast=2.0",))
     assert {each.layout for each in study.runs} == {"graded"}  # the usual contrast
     assert not any(d.judged or d.expectation for d in study.plans)
-    assert any(d.judged for d in build(Sweep(), "", "").plan)
-    assert Sweep(layout="thinned").name.endswith("layout-thinned")
+    assert any(d.judged for d in fixtures.built().plans)
+    assert named(Asked("mms", {"layout": ("thinned",)})).endswith("layout-thinned")
 
 
 def test_outline_and_ratio_of_neighbours() -> None:
@@ -209,7 +210,10 @@ def test_fewer_particles_where_little_happens_cost_gimp_little() -> None:
 def stored(of: Run, particles: int, steps: int, error: float) -> Result:
     """A Result with that error in every norm."""
     errors = {q: dict.fromkeys(NORMS, error) for q in QUANTITIES}
-    return Result(of, of.digest, "finished", errors, steps, particles, 1.0, 1.0, 1.0)
+    return Result(
+        run=of, digest=of.digest, status="finished", errors=errors, steps=steps, particles=particles, dt=1.0,
+        wall_s=1.0, peak_memory_mb=1.0,
+    )  # fmt: skip
 
 
 def test_what_a_layout_saves() -> None:

@@ -8,16 +8,17 @@ import sys
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 from fixtures_tree import Tree, copied, forget
-from mpm_verify.cases.mms.sweep import Sweep, build
 
 from mpm_verify.cases.column.run import ColumnRun
+from mpm_verify.cases.harness.build import Asked, build
 from mpm_verify.cases.harness.identity import identity
 from mpm_verify.cases.harness.runner import RunnerError, process_pool, run_study
 from mpm_verify.cases.harness.store import Store
-from mpm_verify.cases.harness.study import Run
+from mpm_verify.cases.mms.run import Run
 from mpm_verify.solver import own_file
 from mpm_verify.solver.plugins import MATERIALS, METHODS, SOLUTIONS, available
 from mpm_verify.solver.source_hash import closure, parse
@@ -30,7 +31,7 @@ RUNS = {
     "apic": replace(RUN, transfer="apic"),
     "graded": replace(RUN, layout="graded"),
     "column": ColumnRun(),
-    "jaumann": ColumnRun(law="mohr_coulomb:rate=jaumann"),
+    "jaumann": ColumnRun(material="mohr_coulomb:rate=jaumann"),
     "fbar": ColumnRun(smoothing="fbar"),
 }
 MMS, COLUMN = {"cpdi", "gimp", "swirl", "apic", "graded"}, {"column", "jaumann", "fbar"}
@@ -56,9 +57,9 @@ def voided(before: dict[str, str]) -> set[str]:
 
 def test_the_closure_holds_what_computes_and_no_more() -> None:
     for case in ("mms", "column"):
-        held = {name.removeprefix("mpm_verify.") for name in closure(f"mpm_verify.cases.{case}.case")}
+        held = {name.removeprefix("mpm_verify.") for name in closure(f"mpm_verify.cases.{case}.execute")}
         assert {
-            f"cases.{case}.case",
+            f"cases.{case}.execute",
             "solver.step",
             "solver.transfer",
             "solver.transfers._passes",
@@ -69,7 +70,7 @@ def test_the_closure_holds_what_computes_and_no_more() -> None:
         assert not {name for name in held if name.startswith(f"cases.{other}")}
         assert not {"cases.harness.store", "cases.harness.runner", "cases.judging.order", "cases.judging.fit"} & held
         for package in ("solver.basis", "solver.material", "solver.rates", "solver.smoothing", "mms.solutions"):
-            assert not {name for name in held if name.startswith(package)}, package
+            assert not {name for name in held if name.startswith(f"{package}.")}, package
 
 
 @pytest.mark.parametrize("name", available("mpm_verify.solver.basis"))
@@ -128,11 +129,13 @@ def test_what_voids_nothing(tree: Tree) -> None:
     tree.replace("solver/layout.py", "must lie between", "has to lie between")
     tree.append("reports/pages/mms.py")
     tree.append("verify/commands/mms.py")
-    tree.append("cases/mms/sweep.py")
+    tree.append("cases/mms/case.py")
+    tree.append("cases/column/case.py")
+    tree.append("cases/harness/build.py")
     tree.append("cases/mms/expectations.py")
     tree.append("cases/judging/order.py")
     tree.append("cases/element/exam.py")
-    tree.append("cases/another/case.py", "def execute(run, tick):\n    return 1\n")
+    tree.append("cases/another/execute.py", "def execute(run, tick):\n    return 1\n")
     tree.append("solver/basis/another.py", "x = 1\n")
     assert voided(before) == set()
 
@@ -155,8 +158,8 @@ def test_what_voids_nothing(tree: Tree) -> None:
         ("mms/solutions/swirl.py", {"swirl"}),
         ("mms/grading.py", {"graded"}),
         ("mms/derive.py", MMS),
-        ("cases/mms/case.py", MMS),
-        ("cases/column/case.py", COLUMN),
+        ("cases/mms/execute.py", MMS),
+        ("cases/column/execute.py", COLUMN),
     ],
 )
 def test_what_an_edit_voids(tree: Tree, file: str, runs: set[str]) -> None:
@@ -256,9 +259,7 @@ def test_the_environment_counts(write: Write, monkeypatch: pytest.MonkeyPatch) -
 def test_other_processes_derive_the_same(write: Write) -> None:
     """Whatever the order of hashes."""
     path = write("AMP = sp.Rational(1, 20)", "x = x + 0*y; AMP_ = [sp.exp(x * y * t), sp.sqrt(x + y)]")
-    code = (
-        f"from mpm_verify.cases.harness.study import Run; print(Run('cpdi', {path!r}, 'neo_hookean', 8, 4, 0.4).digest)"
-    )
+    code = f"from mpm_verify.cases.mms.run import Run; print(Run('cpdi', {path!r}, 'neo_hookean', 8, 4, 0.4).digest)"
     for seed in ("1", "2"):
         environment = {**os.environ, "PYTHONHASHSEED": seed}
         done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=environment, check=True)
@@ -303,12 +304,12 @@ def test_a_material_counts_with_its_helpers_and_data(
 # ---- in worker processes
 
 
-def study_of(solution: str, folder: Path) -> tuple[Store, Callable[[], object]]:
-    study = build(Sweep(solution=solution, cells=(8,), ppc=(4,)), "verify mms", "mms")
+def study_of(solution: str, folder: Path) -> tuple[Store, Callable[[], dict[str, Any]]]:
+    study = build(Asked("mms", {"solution": [solution], "cells": [8], "ppc": [4]}), "verify mms", "mms")
     store = Store(folder)
     store.create(study)
 
-    def run() -> object:
+    def run() -> dict[str, Any]:
         with process_pool(1) as (pool, _):
             return run_study(study, store, pool, 1)
 
@@ -319,9 +320,9 @@ def test_a_worker_derives_the_same(write: Write, tmp_path: Path) -> None:
     path = write("from consts import AMP")
     (Path(path).parent / "consts.py").write_text("AMP = 0.02\n")
     _, run = study_of(path, tmp_path / "study")
-    (result,) = run().values()  # type: ignore[attr-defined]
-    assert result.status == "finished"
-    assert result.digest == replace(RUN, solution=path).digest
+    results = run()
+    assert set(results) == {replace(RUN, solution=path, courant=courant).digest for courant in (0.4, 0.2)}
+    assert all(result.status == "finished" and result.digest == digest for digest, result in results.items())
 
 
 @pytest.mark.parametrize(
@@ -336,12 +337,12 @@ def test_a_worker_refuses_another_problem(write: Write, tmp_path: Path, head: st
 
 
 def test_the_closure_is_found_in_the_text_as_python_imports_it() -> None:
-    """Every module of ours that a statement of case.py names is in the closure, the type checker's left out."""
-    import mpm_verify.cases.mms.case as case
+    """Every module of ours that a statement of execute.py names is in the closure, the type checker's left out."""
+    import mpm_verify.cases.mms.execute as case
 
     named = set()
     for node in ast.parse(Path(str(case.__file__)).read_text()).body:
         if isinstance(node, ast.ImportFrom) and str(node.module).startswith("mpm_verify"):
             named.add(str(node.module))
     assert len(named) > 10
-    assert named <= closure("mpm_verify.cases.mms.case").keys()
+    assert named <= closure("mpm_verify.cases.mms.execute").keys()

@@ -1,7 +1,6 @@
 """What other programs read: the document of --json, held against its schema, and the JUnit file."""
 
 import json
-import os
 import subprocess
 import sys
 from collections.abc import Callable
@@ -14,9 +13,9 @@ import fixtures_study as fixtures
 import pytest
 from jsonschema import Draft202012Validator, ValidationError
 
-from mpm_verify.cases.mms import case as mms
+from mpm_verify.cases.mms import execute as mms
 from mpm_verify.cases.mms.run import NORMS, QUANTITIES, Result
-from mpm_verify.reports.export.document import SCHEMA, VERSION
+from mpm_verify.reports.export.document import VERSION, schema
 from mpm_verify.solver.failure import Failure, FailureKind
 from mpm_verify.verify.main import main
 
@@ -34,9 +33,9 @@ def parse(text: str) -> Json:
 
 
 def validate(document: Json) -> None:
-    schema = json.loads(SCHEMA.read_text())
-    Draft202012Validator.check_schema(schema)
-    Draft202012Validator(schema).validate(document)
+    derived = schema("mms")
+    Draft202012Validator.check_schema(derived)
+    Draft202012Validator(derived).validate(document)
 
 
 # ---- a real study in a process of its own
@@ -46,18 +45,7 @@ def validate(document: Json) -> None:
 def real(tmp_path_factory: pytest.TempPathFactory) -> tuple[subprocess.CompletedProcess[str], Path]:
     """Classical MPM beside CPDI; with 1 per cell on 16 cells classical MPM ends with det F <= 0."""
     folder = tmp_path_factory.mktemp("real")
-    command = [
-        sys.executable,
-        "-m",
-        "mpm_verify.verify.main",
-        "mms",
-        "--method",
-        "mpm",
-        "--method",
-        "cpdi",
-        "--jobs",
-        "1",
-    ]
+    command = [sys.executable, "-m", "mpm_verify", "mms", "--method", "mpm,cpdi", "--jobs", "1", "--page"]
     command += ["--cells", "8,16,32", "--ppc", "1,4", "--json", "--junit", "below/out.xml", "--out", "study"]
     return subprocess.run(command, capture_output=True, text=True, cwd=folder, timeout=120), folder
 
@@ -107,9 +95,6 @@ def test_junit_of_the_real_study(real: tuple[subprocess.CompletedProcess[str], P
 def told(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> Callable[..., Any]:
     """Call the command with results changed by a function; exit code, document, JUnit suite."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(
-        "mpm_verify.reports.pages.mms.render", lambda folder, record=None: folder / "report.html"
-    )  # two seconds a page
 
     def tell(change: Change = lambda result: result, *arguments: str) -> tuple[int, Json, ElementTree.Element]:
         monkeypatch.setattr(mms, "execute", lambda run, tick: (change(fixtures._result(run)), {}))
@@ -118,6 +103,8 @@ def told(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tm
             main()
         document = parse(capsys.readouterr().out)
         validate(document)
+        assert document["report"] is None  # nobody asked for a page
+        assert document["exit_code"] == ended.value.code
         return ended.value.code, document, ElementTree.parse("out.xml").getroot()
 
     return tell
@@ -142,7 +129,7 @@ def finest_lost(result: Result) -> Result:
     [
         (lambda result: result, 0, {"PASS"}),
         (leaking, 1, {"FAIL"}),
-        (lost, 2, {"ERROR"}),
+        (lost, 4, {"ERROR"}),
         (finest_lost, 3, {"INCONCLUSIVE"}),
     ],
     ids=["pass", "fail", "error", "inconclusive"],
@@ -154,7 +141,7 @@ def test_each_outcome(told: Callable[..., Any], change: Change, code: int, outco
     assert all(verdict["reason"] for verdict in document["verdicts"])
     assert len(suite.findall("testcase")) == len(document["verdicts"]) == 2
     counted = [suite.get(name) for name in ("tests", "failures", "errors")]
-    assert counted == ["2", {1: "2", 3: "2"}.get(code, "0"), "2" if code == 2 else "0"]
+    assert counted == ["2", {1: "2", 3: "2"}.get(code, "0"), "2" if code == 4 else "0"]
     assert len(suite.findall("testcase/failure")) == int(counted[1] or 0)
     assert len(suite.findall("testcase/error")) == int(counted[2] or 0)
 
@@ -235,6 +222,10 @@ def test_schema_is_of_this_version(document: Json) -> None:
         validate(document)
 
 
-def test_schema_is_installed_with_the_package() -> None:
-    assert SCHEMA.parent.name == "verify"
-    assert os.access(SCHEMA, os.R_OK)
+def test_schema_of_a_command(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    """It is derived from the records that are printed, and printed itself."""
+    monkeypatch.setattr(sys, "argv", ["verify", "schema", "mms"])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    assert ended.value.code == 0
+    assert parse(capsys.readouterr().out) == schema("mms")

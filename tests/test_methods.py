@@ -9,12 +9,12 @@ import pytest
 from typer.testing import CliRunner
 
 from mpm_verify.solver.plugins import METHODS, available
-from mpm_verify.verify.main import app
+from mpm_verify.verify.main import application
 
 
 def run(*arguments: str) -> tuple[int, str]:
     """Exit code and what is printed."""
-    done = CliRunner().invoke(app, list(arguments), standalone_mode=False)
+    done = CliRunner().invoke(application(), list(arguments), standalone_mode=False)
     return (done.return_value if done.exception is None else 2), done.output
 
 

@@ -296,7 +296,7 @@ def test_a_second_time_nothing_is_computed(folder: Path, monkeypatch: pytest.Mon
     """Every part is a run of the store."""
     study = read(folder).study
     assert len(study.runs) == len(set(study.runs)) == 3 + len(WRONG) + 1
-    monkeypatch.setattr("mpm_verify.cases.objectivity.case.execute", lambda *_: pytest.fail("computed"))
+    monkeypatch.setattr("mpm_verify.cases.objectivity.execute.execute", lambda *_: pytest.fail("computed"))
     before = {file: file.stat().st_mtime_ns for file in (folder / "runs").iterdir()}
     conduct(study, Settings(folder, page=False))
     assert {file: file.stat().st_mtime_ns for file in (folder / "runs").iterdir()} == before

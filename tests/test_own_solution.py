@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from mpm_verify.cases.harness.identity import identity
-from mpm_verify.cases.mms.case import execute
+from mpm_verify.cases.mms.execute import execute
 from mpm_verify.cases.mms.run import Run
 from mpm_verify.mms.check import FINE, check, determinant, least_det
 from mpm_verify.mms.manufacture import manufacture

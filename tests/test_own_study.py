@@ -3,21 +3,20 @@
 import itertools
 import json
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
-from mpm_verify.cases.mms.sweep import Sweep, build
 
-from mpm_verify.cases.mms.case import execute
+from mpm_verify.cases.harness.build import Asked, build
+from mpm_verify.cases.harness.runner import Ticker
+from mpm_verify.cases.mms.execute import execute
 from mpm_verify.cases.mms.expectations import expected, promised
 from mpm_verify.cases.mms.time_step import rounded, speed_parameter
 from mpm_verify.mms.cells import check_cells, fits, fitting, ratio
-from mpm_verify.solver import plugins
-from mpm_verify.solver.plugins import METHODS, SOLUTIONS, available, create, on_screen
+from mpm_verify.solver.plugins import METHODS, SOLUTIONS, available, create, label
 from mpm_verify.verify.main import main
 
 EXAMPLE = "tests/own_solution.py"
@@ -31,14 +30,6 @@ def domain({speed}):
     return {{"lower": (0, 0), "upper": ({width}, {height}), "duration": 0.02, "speed": {c0}{more}}}
 """
 USUAL, QUICK = (8, 16, 32, 64, 128), (8, 12, 16, 24, 32)
-
-
-@pytest.fixture(autouse=True)
-def forgotten() -> Iterator[None]:
-    """Files are read once a process: not so between tests."""
-    yield
-    plugins.source.cache_clear()
-    sys.modules["mpm_verify.mms.solutions._own"].load.cache_clear()
 
 
 def write(folder: Path, width: str = "1", height: str = "1", c0: str = "c0", more: str = "") -> str:
@@ -158,9 +149,15 @@ def test_the_command_chooses_cells_and_says_so(
 # ---- time steps
 
 
-def refused(sweep: Sweep) -> str:
+def swept(**axes: Any) -> Any:
+    """The study of these axes: one value of each, or a tuple."""
+    asked = {key: list(value) if isinstance(value, tuple) else [value] for key, value in axes.items()}
+    return build(Asked("mms", asked), "", "t")
+
+
+def refused(**axes: Any) -> str:
     with pytest.raises(ValueError, match="stability limit") as told:
-        build(sweep, "", "")
+        swept(**axes)
     assert "\n" not in str(told.value)
     return str(told.value)
 
@@ -172,51 +169,48 @@ def advised(text: str, option: str) -> str:
 def test_a_speed_below_that_of_the_waves(tmp_path: Path) -> None:
     """Both ways out are taken as they are typed, run, and are the limit: a little more is refused."""
     path, cells = write(tmp_path), (8, 12)
-    text = refused(Sweep(("cpdi",), f"{path}:A=0.03,c0=40", cells=cells, ppc=(4,)))
+    text = refused(solution=f"{path}:A=0.03,c0=40", cells=cells, ppc=4)
     assert text.startswith("own:A=0.03,c0=40: with waves at 116")
     assert f"--solution {path}:A=0.03,c0=" in text
     assert text.endswith("; --force runs it all the same")
     courant, c0 = float(advised(text, "--courant")), float(text.split(",c0=")[-1].split(";")[0])
     assert 0.3 < courant < 0.35
     assert 46 < c0 < 50
-    slower = Sweep(("cpdi",), f"{path}:A=0.03,c0=40", cells=cells, ppc=(4,), courant=courant)
-    faster = Sweep(("cpdi",), f"{path}:A=0.03,c0={c0:g}", cells=cells, ppc=(4,))
-    for sweep in (slower, faster):
-        runs = build(sweep, "", "").runs
-        assert execute(runs[0])[0].status == "finished"
-    refused(Sweep(("cpdi",), f"{path}:A=0.03,c0=40", cells=(64,), courant=courant * 1.02))
-    refused(Sweep(("cpdi",), f"{path}:A=0.03,c0={c0 * 0.98:g}", cells=(64,)))
-    build(Sweep(("cpdi",), f"{path}:A=0.03,c0=40", cells=cells, force=True), "", "")
+    slower = swept(solution=f"{path}:A=0.03,c0=40", cells=cells, ppc=4, courant=courant)
+    faster = swept(solution=f"{path}:A=0.03,c0={c0:g}", cells=cells, ppc=4)
+    for study in (slower, faster):
+        assert execute(study.runs[0], Ticker(""))[0].status == "finished"
+    refused(solution=f"{path}:A=0.03,c0=40", cells=64, courant=courant * 1.02)
+    refused(solution=f"{path}:A=0.03,c0={c0 * 0.98:g}", cells=64)
+    swept(solution=f"{path}:A=0.03,c0=40", cells=cells, force=True)
 
 
 def test_a_speed_that_is_no_parameter(tmp_path: Path) -> None:
-    text = refused(Sweep(solution=write(tmp_path, c0="20"), cells=(64,)))
+    text = refused(solution=write(tmp_path, c0="20"), cells=64)
     least = float(text.split('"speed": ')[1].split(" in domain()")[0])
-    plugins.source.cache_clear()
-    sys.modules["mpm_verify.mms.solutions._own"].load.cache_clear()
-    build(Sweep(solution=write(tmp_path, c0=f"{least:g}"), cells=(64,)), "", "")
+    swept(solution=write(tmp_path, c0=f"{least:g}"), cells=64)
 
 
 @pytest.mark.parametrize("solution", ["axis_aligned", "swirl:A=0.01", "bar:n=2", "expanding_ring"])
 def test_solutions_of_the_library(solution: str) -> None:
     """A stiff material makes the waves fast: the same advice, taken as it is typed."""
     stiff = "neo_hookean:E=1e6"
-    text = refused(Sweep(solution=solution, material=stiff, cells=(64,)))
+    text = refused(solution=solution, material=stiff, cells=64)
     courant = float(advised(text, "--courant"))
-    build(Sweep(solution=solution, material=stiff, cells=(64,), courant=courant), "", "")
+    swept(solution=solution, material=stiff, cells=64, courant=courant)
     faster = text.split("--solution ")[1].split("; --force")[0]
-    build(Sweep(solution=faster, material=stiff, cells=(64,)), "", "")
-    build(Sweep(solution=solution, cells=USUAL), "", "")
+    swept(solution=faster, material=stiff, cells=64)
+    swept(solution=solution, cells=USUAL)
 
 
 def test_smaller_courant_numbers_stay_in_the_advice() -> None:
-    text = refused(Sweep(material="neo_hookean:E=1e6", cells=(64,), times=(0.05, 0.01)))
+    text = refused(material="neo_hookean:E=1e6", cells=64, courant=(0.4, 0.05, 0.01))
     assert "--courant 0.0845,0.05,0.01, or" in text
 
 
 def test_where_no_courant_number_will_do() -> None:
     """Below 0.001 none is taken, and none is advised."""
-    text = refused(Sweep(material="neo_hookean:E=1e12", cells=(64,)))
+    text = refused(material="neo_hookean:E=1e12", cells=64)
     assert "--courant" not in text
     assert "take --solution axis_aligned:C=" in text
 
@@ -224,14 +218,14 @@ def test_where_no_courant_number_will_do() -> None:
 def test_a_study_without_end_is_refused(tmp_path: Path) -> None:
     path = write(tmp_path, more=', "order": 2')
     Path(path).write_text(Path(path).read_text().replace('"duration": 0.02', '"duration": 1e4'))
-    with pytest.raises(ValueError, match=r"own: a run would take 3\.2e\+08 time steps to fill the duration of 10000;"):
-        build(Sweep(solution=path, cells=(64,)), "", "")
+    with pytest.raises(ValueError, match=r"own: a run would take 1\.6e\+08 time steps to fill the duration of 10000;"):
+        swept(solution=path, cells=64)
 
 
 def test_words(tmp_path: Path) -> None:
     assert speed_parameter(create(SOLUTIONS, write(tmp_path))) == "c0"
     assert speed_parameter(create(SOLUTIONS, "axis_aligned:phase=100")) == "C"
-    assert on_screen("a/b/own.py:A=1,B=2") == "own:A=1,B=2"
-    assert on_screen("axis_aligned:A=1") == "axis_aligned:A=1"
+    assert label("a/b/own.py:A=1,B=2") == "own:A=1,B=2"
+    assert label("axis_aligned:A=1") == "axis_aligned:A=1"
     assert rounded(0.12345, np.floor) == 0.123
     assert rounded(1234.5, np.ceil) == 1240

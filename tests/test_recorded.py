@@ -1,16 +1,15 @@
 """Recorded errors, small amplitudes and the separation by rotation, run anew."""
 
 import pytest
-from mpm_verify.cases.mms.sweep import canonical
 
 from mpm_verify.cases.harness.runner import InProcess, run_study
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.cases.harness.verdicts import findings
-from mpm_verify.cases.mms.case import execute
 from mpm_verify.cases.mms.deviations import RECORDED
-from mpm_verify.cases.mms.methods import Comparison, build_methods
+from mpm_verify.cases.mms.execute import execute
+from mpm_verify.cases.mms.methods import build_methods
 from mpm_verify.cases.mms.run import Result, Run
-from mpm_verify.solver.plugins import MATERIALS, METHODS, SOLUTIONS, available, create
+from mpm_verify.solver.plugins import MATERIALS, METHODS, SOLUTIONS, available, canonical, create
 
 pytestmark = pytest.mark.slow
 
@@ -29,7 +28,7 @@ def test_recorded_errors(key: tuple[str, str, int]) -> None:
 
 @pytest.mark.parametrize("solution", ["axis_aligned:A=1e-6", "clamped_shear:G=1e-6"])
 def test_all_methods_are_of_second_order_while_nothing_crosses(solution: str, tmp_path) -> None:
-    study = build_methods(Comparison(tuple(available(METHODS)), {solution: (16, 24, 32, 48, 64)}), "verify", "small")
+    study = build_methods(available(METHODS), {solution: (16, 24, 32, 48, 64)}, (4,), "verify", "small")
     store = Store(tmp_path)
     store.create(study)
     results = run_study(study, store, InProcess(), 1)

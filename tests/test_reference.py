@@ -5,7 +5,7 @@ import math
 
 import pytest
 
-from mpm_verify.cases.mms.case import execute
+from mpm_verify.cases.mms.execute import execute
 from mpm_verify.cases.mms.run import Run
 from mpm_verify.solver.failure import FailureKind
 

@@ -24,9 +24,14 @@ from mpm_verify.reports.components import audited
 from mpm_verify.reports.components.cards import cards
 from mpm_verify.reports.figures.error_field import choose, domains
 from mpm_verify.reports.frames import read
-from mpm_verify.reports.pages.mms import render
+from mpm_verify.reports.pages.mms import page as draw
 from mpm_verify.reports.sentences import failures, verdicts
 from mpm_verify.solver.failure import Failure, FailureKind
+
+
+def render(folder: Path) -> Path:
+    """Draw the page of a stored study."""
+    return draw(read(folder))
 
 
 @pytest.fixture(autouse=True)
@@ -207,7 +212,7 @@ def test_two_solutions_are_told_apart(tmp_path: Path) -> None:
     store = Store(fixtures.make(tmp_path, ("cpdi",)))
     study, other = store.study(), "clamped_shear:G=0.05"
     runs = tuple(replace(run, solution=other) for run in study.runs)
-    declared = tuple(replace(d, solution=other) for d in study.plans)
+    declared = tuple(replace(d, run=replace(d.run, solution=other)) for d in study.plans)
     store.create(replace(study, runs=study.runs + runs, plans=study.plans + declared))
     for old, new in zip(study.runs, runs, strict=True):
         if (result := store.get(old.digest)) is not None:
@@ -292,7 +297,7 @@ def test_numbers_are_written_alike(value: float | None, written: str) -> None:
 
 
 def test_words_of_expectations_and_failures() -> None:
-    expected = QuantityPlan("cpdi", "affine", 4, "u", "rms", True, Expectation(2.0))
+    expected = QuantityPlan(Run(solution="affine"), "u", "rms", True, Expectation(2.0))
     assert verdicts.registered(expected.expectation) == "2.00 (1.80 to 2.30)"
     assert verdicts.registered(Expectation(None)) == "diverges"
     assert words.series(Run("mpm", "affine", "neo_hookean", 8, 9, 0.4)) == "MPM, 9 per cell"

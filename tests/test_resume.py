@@ -12,7 +12,7 @@ import pytest
 from mpm_verify.cases.harness.store import Store
 
 VERIFY = [sys.executable, "-m", "mpm_verify.verify.main", "mms"]
-POOL = "from mpm_verify.verify import conduct, main; conduct.SMALL = 0; main.main()"
+POOL = "from mpm_verify.verify import main, run; run.SMALL = 0; main.main()"
 WITH_WORKERS = [sys.executable, "-c", POOL]  # so little work would be done without worker processes
 EIGHT = """
 [run]

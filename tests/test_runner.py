@@ -10,7 +10,6 @@ from typing import Any
 import fixtures_study as fixtures
 import numpy as np
 import pytest
-from mpm_verify.cases.mms.sweep import Sweep, build
 
 from mpm_verify.cases.harness.runner import RunnerError, Ticker, cost, pending, process_pool, run_study
 from mpm_verify.cases.harness.store import Arrays, Store, StoreError
@@ -45,7 +44,7 @@ def calls(monkeypatch: pytest.MonkeyPatch) -> list[Run]:
 
 
 def small(**changes: Any) -> Study:
-    return build(replace(Sweep(cells=(8, 16, 32), ppc=(1, 4)), **changes), "verify mms", "mms")
+    return fixtures.built(**{"cells": (8, 16, 32), "ppc": (1, 4)} | changes)
 
 
 def opened(folder: Path, study: Study) -> Store:
@@ -68,10 +67,10 @@ def test_what_is_stored_is_not_run_again(tmp_path: Path, calls: list[Run]) -> No
 
 
 def test_a_wider_study_runs_only_what_is_new(tmp_path: Path, calls: list[Run]) -> None:
-    study = small(methods=("mpm",))
+    study = small(method=("mpm",))
     run_study(study, opened(tmp_path, study), Serial(), 1)
     calls.clear()
-    wider = small(methods=("mpm",), cells=(8, 16, 32, 64))
+    wider = small(method=("mpm",), cells=(8, 16, 32, 64))
     results = run_study(wider, opened(tmp_path, wider), Serial(), 1)
     assert {run.cells for run in calls} == {64}
     assert results.keys() == {run.digest for run in wider.runs}
@@ -88,7 +87,7 @@ def test_results_of_other_sources_are_run_again(
 
 
 def test_failed_runs_are_results_and_not_run_again(tmp_path: Path, calls: list[Run]) -> None:
-    study = small(methods=("mpm",))
+    study = small(method=("mpm",))
     store = opened(tmp_path, study)
     results = run_study(study, store, Serial(), 1)
     failed = [(r.run.cells, r.run.ppc) for r in results.values() if r.status == "failed"]
@@ -160,14 +159,14 @@ def test_poll_is_called_while_runs_are_under_way(tmp_path: Path, calls: list[Run
 
 @pytest.mark.parametrize("executor", [Serial, lambda: ThreadPoolExecutor(1), lambda: ThreadPoolExecutor(4)])
 def test_any_executor(tmp_path: Path, calls: list[Run], executor: Callable[[], Executor]) -> None:
-    study = small(cells=(8, 16, 32, 64), methods=("cpdi", "mpm"))
+    study = small(cells=(8, 16, 32, 64), method=("cpdi", "mpm"))
     with executor() as pool:
         results = run_study(study, opened(tmp_path, study), pool, 1)
     assert results == {run.digest: fixtures._result(run) for run in study.runs}
 
 
 def test_two_processes_give_the_numbers_of_one(tmp_path: Path) -> None:
-    study = build(Sweep(methods=("cpdi", "mpm"), cells=(8, 16), ppc=(1, 4)), "verify mms", "mms")
+    study = fixtures.built(method=("cpdi", "mpm"), cells=(8, 16), ppc=(1, 4))
     alone = opened(tmp_path / "alone", study)
     here = run_study(study, alone, Serial(), 1)
     shared = opened(tmp_path / "shared", study)

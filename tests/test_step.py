@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mpm_verify.cases.mms import case as mms
+from mpm_verify.cases.mms import execute as mms
 from mpm_verify.cases.mms.run import Run
 from mpm_verify.solver._jit import BLOCK
 from mpm_verify.solver.boundary import box

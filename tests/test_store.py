@@ -13,19 +13,19 @@ import pytest
 
 from mpm_verify.cases.harness import identity
 from mpm_verify.cases.harness.store import Store, StoreError
-from mpm_verify.cases.harness.study import QuantityPlan, Study
+from mpm_verify.cases.harness.study import Study
 from mpm_verify.cases.judging.order import Expectation
 from mpm_verify.cases.mms.run import Result, Run
 from mpm_verify.solver.failure import Failure, FailureKind
 
 RUN = Run("cpdi", "axis_aligned", "neo_hookean", 8, 4, 0.4)
-OTHER = {str: "other", int: 7, float: 0.125, tuple: (0.25, 0.0)}
+OTHER = {str: "other", int: 16, float: 0.125, tuple: (0.25, 0.0)}
 
 
 @pytest.fixture
 def store(tmp_path: Path) -> Store:
     made = Store(tmp_path / "study")
-    made.create(Study("mms", "title", "verify mms", (RUN,), ()))
+    made.create(Study("mms", "title", "verify mms", (RUN,), (), case="mms"))
     return made
 
 
@@ -72,8 +72,8 @@ def test_numbers_come_back_to_the_last_bit(store: Store) -> None:
 
 def test_study_round_trip(tmp_path: Path) -> None:
     expectations = (Expectation(2.0, source="theory", constant=1e-5, constant_h=1 / 128), Expectation(None), None)
-    declared = tuple(QuantityPlan("cpdi", "affine", 4, "u", "rms", e is not None, e) for e in expectations)
-    study = Study("mms", "title", "verify mms", (RUN, replace(RUN, force=True)), declared)
+    declared = tuple(fixtures.plan("cpdi", "affine", 4, "u", "rms", e is not None, e) for e in expectations)
+    study = Study("mms", "title", "verify mms", (RUN, replace(RUN, force=True)), declared, case="mms")
     Store(tmp_path).create(study)
     assert Store(tmp_path).study() == study
 
@@ -94,7 +94,7 @@ def test_what_is_not_stored_is_none(store: Store) -> None:
 
 def test_create_keeps_results(store: Store) -> None:
     store.put(finished(), {})
-    store.create(Study("mms", "another", "verify mms", (), ()))
+    store.create(Study("mms", "another", "verify mms", (), (), case="mms"))
     assert store.get(RUN.digest) == finished()
     assert store.study().title == "another"
 
@@ -213,7 +213,7 @@ def test_result_with_a_missing_field_is_broken(store: Store) -> None:
 def test_create_does_not_write_over_a_broken_study(store: Store, text: str) -> None:
     (store.folder / "study.json").write_text(text)
     with pytest.raises(StoreError):
-        store.create(Study("mms", "title", "verify mms", (), ()))
+        store.create(Study("mms", "title", "verify mms", (), (), case="mms"))
     assert (store.folder / "study.json").read_text() == text
 
 
@@ -225,7 +225,7 @@ def test_no_study_folder(tmp_path: Path) -> None:
 def test_folder_below_a_file(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(StoreError, match=r"cannot make the study folder .* give a writable one with --out"):
-        Store(tmp_path / "file" / "study").create(Study("mms", "title", "verify mms", (), ()))
+        Store(tmp_path / "file" / "study").create(Study("mms", "title", "verify mms", (), (), case="mms"))
 
 
 def test_missing_arrays(store: Store) -> None:

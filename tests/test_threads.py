@@ -11,7 +11,7 @@ import pytest
 from mpm_verify.cases.harness.runner import process_pool, run_study
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.cases.harness.study import Study
-from mpm_verify.cases.mms.case import setup
+from mpm_verify.cases.mms.execute import setup
 from mpm_verify.cases.mms.run import Run
 from mpm_verify.solver._jit import use_threads
 from mpm_verify.solver.boundary import box
@@ -223,7 +223,7 @@ def test_more_threads_than_there_are() -> None:
 def test_jobs_and_threads_give_the_same_results(tmp_path: Path) -> None:
     """One worker with one thread against two workers with two threads each."""
     runs = tuple(Run("cpdi", "axis_aligned", "neo_hookean", cells, 4, 0.4) for cells in (8, 12, 16))
-    study = Study("jobs", "jobs", "", runs, ())
+    study = Study("jobs", "jobs", "", runs, (), case="mms")
     found = []
     for jobs in (1, 2):
         store = Store(tmp_path / str(jobs))

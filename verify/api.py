@@ -102,9 +102,9 @@ def study(
     asked: Study[Any] = build(Asked(case, values, replicates, quick), command)
     settings = Settings(named(asked, Path(out) if out else None), jobs, threads, yes=True)
     store = Store(settings.folder, case)
+    affordable(asked, store, settings)
     with store.locked():
         store.create(asked)
-        affordable(asked, store, settings)
         compute(asked, store, settings)
     return load(settings.folder)
 

@@ -1,6 +1,6 @@
 """Names that options complete and list; from file names, so that neither Numba nor SymPy is imported."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import typer
 
@@ -9,9 +9,15 @@ from mpm_verify.solver.plugins import available
 
 def completion(package: str) -> Callable[[str], list[str]]:
     """Completion of plug-in names of a package."""
+    return completing(lambda: available(package))
+
+
+def completing(names: Callable[[], Sequence[str]]) -> Callable[[str], list[str]]:
+    """Completion of names, of a list with commas its last."""
 
     def complete(incomplete: str) -> list[str]:
-        return [name for name in available(package) if name.startswith(incomplete)]
+        before, comma, last = incomplete.rpartition(",")
+        return [f"{before}{comma}{name}" for name in names() if name.startswith(last)]
 
     return complete
 

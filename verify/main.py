@@ -6,6 +6,7 @@ Nothing is imported here that a help text does not need: `verify --help` reads t
 import contextlib
 import os
 import sys
+from os import _exit  # before a user's file is executed, see solver/own_file.py
 
 from mpm_verify.verify.exits import DEFECT, STOPPED, USAGE
 
@@ -19,6 +20,7 @@ Verification of the material point method: manufactured solutions, observed orde
 
 Commands (verify COMMAND --help says more):
 {commands}
+  OWN.py       A case of your own, from its file.
 
 Options: -h, --help, --version, --install-completion, --show-completion
 
@@ -28,12 +30,28 @@ ended in error, or a defect of verify.
 
 
 def files() -> dict[str, str]:
-    """File of each command by its name: those of FIRST first; a case without a command file has its `case.py`."""
+    """File of each command by its name: those of FIRST first; a case without a command file has its `case.py`.
+
+    A command is called as the first line of its file says: that of the case `element` is `verify material`.
+    """
     own = {file[:-3]: os.path.join(HERE, "commands", file) for file in os.listdir(os.path.join(HERE, "commands"))
            if file.endswith(".py") and not file.startswith("_")}  # fmt: skip
     found = {name: os.path.join(CASES, name, "case.py") for name in os.listdir(CASES)}
     found = {name: file for name, file in found.items() if os.path.exists(file)} | own
+    found = {called_by(file) or name: file for name, file in found.items()}
     return {name: found[name] for name in sorted(found, key=lambda name: (name not in FIRST, rank(name)))}
+
+
+def first_line(file: str) -> str:
+    """First line of a file's docstring."""
+    with open(file, encoding="utf-8") as text:
+        return text.readline().strip().strip('"')
+
+
+def called_by(file: str) -> str:
+    """NAME in a first line that begins with `verify NAME; empty where there is none."""
+    words = first_line(file).replace("`", " ").split()
+    return words[1].rstrip(":") if words[:1] == ["verify"] else ""
 
 
 def rank(name: str) -> tuple[int, str]:
@@ -45,8 +63,7 @@ def help_text() -> str:
     """All commands, a line each: the first line of their files."""
     lines = []
     for name, file in files().items():
-        with open(file, encoding="utf-8") as text:
-            first = text.readline().strip().strip('"')
+        first = first_line(file)
         told = first.partition("`: ")[2] or first
         lines.append(f"  {name:13}{told[:1].upper()}{told[1:]}")
     return HELP.format(commands="\n".join(lines))
@@ -62,11 +79,14 @@ def application(asked: str = "") -> object:
                       context_settings={"help_option_names": ["-h", "--help"]})  # fmt: skip
     app.callback()(root)
     known = files()
+    if asked.endswith(".py"):
+        import_module("mpm_verify.verify.commands._case").add(app, asked)
+        return app
     for name in [asked] if asked in known else known:
         if known[name].startswith(CASES):
             import_module("mpm_verify.verify.commands._case").add(app, name)
         else:
-            import_module(f"mpm_verify.verify.commands.{name}").add(app)
+            import_module(f"mpm_verify.verify.commands.{os.path.basename(known[name])[:-3]}").add(app)
     return app
 
 
@@ -95,13 +115,20 @@ def called(asked: str) -> int:
 
     import typer
 
+    from mpm_verify.verify.terminal.output import printing
+
     try:
-        code = application(asked)(standalone_mode=False)  # type: ignore[operator]
+        with printing():
+            code = application(asked)(standalone_mode=False)  # type: ignore[operator]
+        if code == STOPPED:
+            raise KeyboardInterrupt
     except typer.TyperException as error:
         message = error.format_message() if hasattr(error, "format_message") else str(error)
         code = complain(message, USAGE if getattr(error, "exit_code", 1) == 1 else error.exit_code)
     except (typer.Abort, KeyboardInterrupt):
         code = complain("stopped; what was finished is stored, and the same command goes on from there", STOPPED)
+    except SystemExit as end:  # of the completion; and 1, which would read as a verdict, where nobody reads a help text
+        code = 0 if end.code == 1 else end.code
     except Exception:
         with suppress(OSError, ValueError, AttributeError):
             import traceback
@@ -115,6 +142,8 @@ def called(asked: str) -> int:
 
 def told(text: str, code: int) -> int:
     """Print, to somebody who may have gone; gives the exit code back, or USAGE where nothing can be written."""
+    if sys.stdout is None:
+        return code
     try:
         sys.stdout.write(text)
         sys.stdout.flush()
@@ -128,7 +157,12 @@ def told(text: str, code: int) -> int:
 def complain(message: str, code: int = USAGE) -> int:
     """One line on standard error, if anybody reads it; gives the exit code back."""
     if message.startswith("No such command"):
-        message = f"{message} Choose from {', '.join(files())}."
+        from mpm_verify.solver.plugins import meant
+
+        near = meant(message.split("'")[1], files())
+        message = f"{message.removesuffix('.')}{near}; choose from {', '.join(files())}"
+    if sys.stderr is None:  # print() would take standard output instead
+        return code
     with contextlib.suppress(OSError, ValueError, AttributeError):
         print(f"verify: {' '.join(message.split())}", file=sys.stderr, flush=True)
     return code
@@ -141,7 +175,7 @@ def run() -> None:
     except SystemExit as end:
         with contextlib.suppress(OSError, ValueError, AttributeError):
             sys.stdout.flush()
-        os._exit(end.code if isinstance(end.code, int) else 0)
+        _exit(end.code if isinstance(end.code, int) else 0)
 
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ from typing import Annotated, Any, get_args, get_type_hints
 import typer
 from typer.core import TyperCommand
 
-from mpm_verify.verify.choices import choices, completion
+from mpm_verify.verify.choices import choices, completing, completion
 
 Jobs = Annotated[int | None, typer.Option(help="Runs at a time.", show_default="processors / threads")]
 Threads = Annotated[int, typer.Option(help="Threads of one run; any number gives the same bits.")]
@@ -32,7 +32,9 @@ Summary = Annotated[
 ]
 Page = Annotated[
     bool | None,
-    typer.Option("--page/--no-page", help="Draw the page.", show_default="page, unless --json or --junit ask for less"),
+    typer.Option(
+        "--page/--no-page", help="Draw the page.", show_default="page, unless --json, --junit or --quick ask for less"
+    ),
 ]
 Vtk = Annotated[bool, typer.Option("--vtk", help="Write snapshots for ParaView.")]
 DryRun = Annotated[bool, typer.Option("--dry-run", help="Print the runs and what they take, and run nothing.")]
@@ -106,13 +108,12 @@ def study_command(
 
 def option(item: Any, hints: Mapping[str, Any], usual: Mapping[str, Any]) -> Any:
     """The option of a field; it may be repeated, and takes several values with commas."""
-    plugins, words = item.metadata.get("plugins", ""), get_args(hints[item.name])
+    plugins, kind = item.metadata.get("plugins", ""), hints[item.name]
+    words = ("yes", "no") if kind is bool else item.metadata.get("choices") or literal(kind)
     text = item.metadata.get("help", "")
     if plugins:
         text += f" {choices(plugins, own=True)}; parameters as name:key=value."
-    complete = completion(plugins) if plugins else None
-    if words and all(isinstance(word, str) for word in words):
-        complete = lambda incomplete: [word for word in words if word.startswith(incomplete)]  # noqa: E731
+    complete = completion(plugins) if plugins else completing(lambda: words)
     default = usual.get(item.name, () if item.default is MISSING else (item.default,))
     shown = ",".join(spelled(value) for value in default)
     names = f"--{item.name.replace('_', '-')}"
@@ -120,6 +121,11 @@ def option(item: Any, hints: Mapping[str, Any], usual: Mapping[str, Any]) -> Any
         list[str] | None,
         typer.Option(names, help=text, autocompletion=complete, show_default=shown or False, metavar="TEXT"),
     ]
+
+
+def literal(kind: Any) -> tuple[str, ...]:
+    """The words of a Literal, none of another type."""
+    return tuple(word for word in get_args(kind) if isinstance(word, str))
 
 
 def spelled(value: Any) -> str:
@@ -139,7 +145,7 @@ def parsed(key: str, kind: Any, text: str) -> list[Any]:
     """The values in one text. Raises ValueError."""
     if get_args(kind) and all(item is float for item in get_args(kind)):
         return [pair(key, part) for part in text.split(";")]
-    return [single(key, kind, part) for part in split(text)]
+    return [single(key, kind, part, text) for part in split(text)]
 
 
 def split(text: str) -> list[str]:
@@ -154,18 +160,22 @@ def split(text: str) -> list[str]:
 
 
 WORDS = {"yes": True, "true": True, "no": False, "false": False}
-EXAMPLES: dict[Any, str] = {int: "whole numbers, such as 8,16,32", float: "numbers, such as 0.4,0.2", bool: "yes or no"}
+EXAMPLES: dict[Any, str] = {
+    int: "whole numbers, such as 8,16,32",
+    float: "numbers, such as 0.4,0.2,0.1",
+    bool: "yes or no",
+}
 
 
-def single(key: str, kind: Any, text: str) -> Any:
-    """One value. Raises ValueError."""
+def single(key: str, kind: Any, part: str, typed: str) -> Any:
+    """One value, `part` of what was typed. Raises ValueError."""
     option_name = f"--{key.replace('_', '-')}"
     try:
         if kind is bool:
-            return WORDS[text.lower()]
-        return kind(text) if kind in (int, float) else text
+            return WORDS[part.lower()]
+        return kind(part) if kind in (int, float) else part
     except (ValueError, KeyError):
-        raise ValueError(f"{option_name} {text!r} cannot be read; write {EXAMPLES[kind]}") from None
+        raise ValueError(f"{option_name} {typed!r} cannot be read; write {EXAMPLES[kind]}") from None
 
 
 def pair(key: str, text: str) -> tuple[float, float]:

@@ -16,6 +16,7 @@ import typer
 from mpm_verify.verify.exits import DEFECT, USAGE
 
 if TYPE_CHECKING:
+    from mpm_verify.cases.harness.build import Asked
     from mpm_verify.cases.harness.study import Study
     from mpm_verify.reports.frames import Record
 
@@ -37,7 +38,8 @@ class Settings:
     json_output: bool = False
     junit: Path | None = None
     summary: Path | None = None
-    page: bool | None = None  # None: unless JSON or JUnit are asked for alone
+    page: bool | None = None  # None: unless JSON or JUnit are asked for alone, or the study is a quick one
+    quick: bool = False
     vtk: bool = False
     dry_run: bool = False
     yes: bool = False
@@ -52,6 +54,11 @@ def usage() -> Iterator[None]:
 
     try:
         yield
+    except SystemExit as error:
+        raise typer.TyperException(
+            f"a file of yours ended the program, with {error.code!r}; a study ends with its own exit code; stored runs "
+            "are kept"
+        ) from error
     except RunnerError as error:
         raise Ended(str(error), DEFECT if error.defect else USAGE) from error
     except (ValueError, StoreError) as error:
@@ -79,14 +86,14 @@ def conduct(study: "Study[Any]", settings: Settings) -> int:
 
         check_count(settings.jobs, "--jobs")
         check_count(settings.threads, "--threads")
-        writable(settings.junit, "--junit")
-        writable(settings.summary, "--summary")
         store = Store(settings.folder, study.case)
         if settings.dry_run:
             return told_plan(study, store, settings)
+        affordable(study, store, settings)
+        writable(settings.junit, "--junit")
+        writable(settings.summary, "--summary")
         with store.locked():  # before study.json is written: whoever is refused leaves the other's study as it is
             store.create(study)
-            affordable(study, store, settings)
             results = compute(study, store, settings)
             record = Record(store, study, results, earlier=False)
             page = draw(record, settings)
@@ -99,16 +106,21 @@ def draw(record: "Record", settings: Settings) -> Path | None:
     """The page of the study; None where none is asked for."""
     wanted = settings.page
     if wanted is None:
-        wanted = settings.vtk or not (settings.json_output or settings.junit)
+        wanted = settings.vtk or not (settings.json_output or settings.junit or settings.quick)
     return page_of(record, settings.vtk) if wanted else None
 
 
 def page_of(record: "Record", vtk: bool = False, **chosen: Any) -> Path:
     """Draw the page of the case: `page` of reports/pages/<case>.py, or what every case can have."""
-    name = f"mpm_verify.reports.pages.{record.study.case}"
-    module = import_module(name if find_spec(name) else "mpm_verify.reports.pages._plain")
+    module = of_case("reports.pages", record) or import_module("mpm_verify.reports.pages._plain")
     path: Path = module.page(record, vtk=vtk, **chosen)
     return path
+
+
+def of_case(room: str, record: "Record") -> Any | None:
+    """The module of a room that has the name of the record's case, if there is one."""
+    name = f"mpm_verify.{room}.{record.study.case}"
+    return import_module(name) if record.study.case.isidentifier() and find_spec(name) else None
 
 
 def export(record: "Record", settings: Settings, page: Path | None) -> None:
@@ -137,16 +149,15 @@ def export(record: "Record", settings: Settings, page: Path | None) -> None:
 
 def more_of(record: "Record") -> dict[str, Any]:
     """What the JSON document of a case has beside that of any: `more` of reports/export/<case>.py, if it is there."""
-    name = f"mpm_verify.reports.export.{record.study.case}"
-    found: dict[str, Any] = import_module(name).more(record) if find_spec(name) else {}
+    module = of_case("reports.export", record)
+    found: dict[str, Any] = module.more(record) if module else {}
     return found
 
 
 def shown(record: "Record", page: Path | None) -> None:
     """Print: `show` of verify/terminal/<case>.py, or verdicts and checks as every case has them."""
-    name = f"mpm_verify.verify.terminal.{record.study.case}"
-    if find_spec(name):
-        import_module(name).show(record, page)
+    if module := of_case("verify.terminal", record):
+        module.show(record, page)
         return
     from mpm_verify.verify.terminal import checks, table
 
@@ -165,7 +176,7 @@ def compute(study: "Study[Any]", store: Any, settings: Settings) -> dict[str, An
     jobs = min(jobs_of(settings), max(1, len(waiting)))
     with progress(waiting, cost) as bar:
         if jobs > 1 and sum(map(cost, waiting)) > SMALL:
-            with process_pool(jobs) as (executor, heard):
+            with process_pool(jobs, study.case) as (executor, heard):
                 return run_study(study, store, executor, settings.threads, bar.done, lambda: bar.hear(heard()))
         Ticker.tell = staticmethod(lambda news: bar.hear([news]))
         return run_study(study, store, InProcess(), settings.threads, bar.done)
@@ -188,9 +199,9 @@ class Estimate:
 
     def __str__(self) -> str:
         """One line."""
-        runs = f"{self.runs} run{'s' * (self.runs != 1)} to be done, {self.stored} stored"
-        size = f"up to {self.particles:,} particles, about {self.memory / 2**30:.1f} GB of memory"
-        return f"{runs}, {size} and {duration(self.seconds)}"
+        told = f"{self.runs} run{'s' * (self.runs != 1)} to be done, {self.stored} stored"
+        needed = f"{self.memory / 2**30:.1f} GB of memory and {duration(self.seconds)}"
+        return f"{told}, up to {self.particles:,} particles, about {needed}"
 
 
 def estimate(study: "Study[Any]", store: Any, settings: Settings) -> Estimate:
@@ -258,6 +269,15 @@ def command() -> str:
             kept.append(argument)
             skip = False
     return "verify " + shlex.join(kept)
+
+
+def study_of(asked: "Asked", out: Path | None) -> "tuple[Study[Any], Path]":
+    """The study that is asked for, and its folder."""
+    from mpm_verify.cases.harness.build import named
+    from mpm_verify.cases.harness.reuse import study
+
+    folder = out or Path("results") / named(asked)
+    return study(asked, command(), folder), folder
 
 
 def named(study: "Study[Any]", out: Path | None) -> Path:

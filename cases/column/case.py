@@ -4,10 +4,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from mpm_verify.cases.column.exam import examine
-from mpm_verify.cases.column.execute import execute, material_of, setup, steps_of
+from mpm_verify.cases.column.execute import material_of, setup, steps_of
 from mpm_verify.cases.column.run import ColumnResult, ColumnRun
 
-__all__ = ["Result", "Run", "check", "examine", "execute"]
+__all__ = ["Result", "Run", "check", "examine"]
 
 Run, Result = ColumnRun, ColumnResult
 

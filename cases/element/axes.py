@@ -22,11 +22,13 @@ class ElementRun(RunRecord):
     """One element test of a material. Raises ValueError with one line for what no test has."""
 
     material: str = axis("mohr_coulomb", "Constitutive model.", MATERIALS)
-    test: str = axis("biaxial", f"{', '.join(TEST_NAMES)}, or {PROPERTIES}: tables and limits of the material.")
+    test: str = axis("biaxial", f"{', '.join(TEST_NAMES)}, or {PROPERTIES}: tables and limits of the material.",
+                     choices=(*TEST_NAMES, PROPERTIES))  # fmt: skip
     stress: float = axis(CONFINED, "Isotropic stress at the start, compression positive, Pa.")
     steps: int = axis(100, "Strain steps of the coarsest run; the finest has sixteen times as many.")
     path: str = axis("", "CSV file with a strain path: columns exx, eyy and exy, or gxy = 2 exy.")
-    units: str = axis("", "Units of the strains in that file: percent or fraction; usual is what its header says.")
+    units: str = axis("", "Units of the strains in that file: percent or fraction; usual is what its header says.",
+                      choices=("percent", "fraction"))  # fmt: skip
     case: ClassVar[str] = "element"
 
     def __post_init__(self) -> None:

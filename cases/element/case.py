@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from mpm_verify.cases.element.exam import examination
-from mpm_verify.cases.element.execute import execute, test_of
+from mpm_verify.cases.element.execute import test_of
 from mpm_verify.cases.element.run import AXES, CONFINED, PATH, PROPERTIES, ElementResult, ElementRun
 from mpm_verify.cases.element.study import ElementStudy
 from mpm_verify.cases.harness.checks import Check, Examination, gathered
@@ -22,7 +22,7 @@ from mpm_verify.cases.harness.study import Study
 from mpm_verify.solver.plugins import MATERIALS, create, label
 from mpm_verify.solver.plugins import canonical as canonical_name
 
-__all__ = ["AXES", "Result", "Run", "canonical", "check", "examine", "execute", "title"]
+__all__ = ["AXES", "Result", "Run", "canonical", "check", "examine", "title"]
 
 Run, Result = ElementRun, ElementResult
 

@@ -157,4 +157,4 @@ def middle(errors: Sequence[float]) -> float:
 
 def crossed(result: Result | None) -> float | None:
     """Faces of cells that a particle passed in the whole run, on average; None where the run is not done."""
-    return result.crossings / result.particles if result else None
+    return result.crossings / result.particles if result and result.particles else None

@@ -12,6 +12,7 @@ from pydantic import TypeAdapter, ValidationError
 from mpm_verify.cases.harness.contract import Case, case_named
 from mpm_verify.cases.harness.refinement import complete, refines
 from mpm_verify.cases.harness.study import QuantityPlan, RunRecord, Study, head
+from mpm_verify.solver.plugins import label, meant
 
 Values = Mapping[str, Sequence[Any]]
 MOST = 10_000  # runs of a study, without those that its judgement adds
@@ -57,7 +58,9 @@ def union(
         runs += more
         plans += declared
     once = tuple(dict.fromkeys(runs))
-    unique = tuple({(plan.head, plan.quantity, plan.norm): plan for plan in reversed(plans)}.values())[::-1]
+    unique: dict[Any, QuantityPlan[Any]] = {}
+    for plan in plans:
+        unique.setdefault((plan.head, plan.quantity, plan.norm), plan)
     least = len(once) if finish is None else finish
     if isinstance(least, bool) or not isinstance(least, int) or not 0 <= least <= len(once):
         raise ValueError(f"finish = {finish!r} must be a whole number from 0 to the {len(once)} runs there are")
@@ -66,7 +69,7 @@ def union(
         title or case.title(once),
         command,
         once,
-        unique,
+        tuple(unique.values()),
         axes(once),
         tuple(words),
         least,
@@ -80,7 +83,7 @@ def _runs(asked: Asked) -> tuple[tuple[Any, ...], list[QuantityPlan[Any]]]:
     known = [item.name for item in fields(case.Run)]
     for key in asked.values:
         if key not in known:
-            raise ValueError(f"{case.name} has no axis {key!r}; it has {', '.join(known)}")
+            raise ValueError(f"{case.name} has no axis {key!r}{meant(key, known)}; it has {', '.join(known)}")
     usual = case.quick if asked.quick else case.axes
     values = {key: list(dict.fromkeys(asked.values.get(key) or usual.get(key) or ())) for key in known}
     values = {key: chosen for key, chosen in values.items() if chosen}
@@ -97,13 +100,14 @@ def _runs(asked: Asked) -> tuple[tuple[Any, ...], list[QuantityPlan[Any]]]:
         order = [key for key in values if key not in inner] + inner
     else:
         order = [*(key for key in asked.values if key in values), *(key for key in values if key not in asked.values)]
-    if (count := prod(len(values[key]) for key in order)) > MOST:
-        raise ValueError(f"{count} runs are asked for, and {MOST} is the most; give fewer values, or several studies")
+    if (count := prod(len(values[key]) for key in order) * max(1, asked.replicates)) > MOST:
+        raise ValueError(
+            f"{count:,} runs are asked for, and {MOST:,} is the most; give fewer values, or several studies"
+        )
     points = [dict(zip(order, point, strict=True)) for point in product(*(values[key] for key in order))]
     runs = tuple(dict.fromkeys(make(case, point) for point in points))
-    for courant in times:
-        make(case, {**points[-1], "courant": courant})  # says what is wrong with it
-    case.check(runs)
+    smaller = [make(case, {**point, "courant": courant}) for courant in times for point in points]
+    case.check((*runs, *smaller))
     if not (case.quantities and refines(case.Run)):
         return tuple(dict.fromkeys(case.companions(runs))), []
     plans = [plan for one in {head(run): run for run in reversed(runs)}.values() for plan in declare(case, one)]
@@ -151,8 +155,8 @@ def _default(case: Case, key: str) -> Any:
 
 def named(asked: Asked) -> str:
     """Name of a study: its methods and what is not as usual, so that another one gets a folder of its own."""
-    case, words = asked.contract, [asked.case]
-    values = {key: list(chosen) for key, chosen in asked.values.items()}
+    case, words = asked.contract, [label(asked.case)]
+    values = {key: list(dict.fromkeys(chosen)) for key, chosen in asked.values.items()}
     usual = {item.name: [item.default] for item in fields(case.Run)} | {k: list(v) for k, v in case.axes.items()}
     for key in (key for key in FIRST if key in usual):
         chosen = values.pop(key, usual[key])

@@ -47,7 +47,8 @@ def _digest(run: Any, plugins: tuple[str, ...], computed_by: str) -> str:
 
 def sources(run: Any, plugins: Mapping[str, str]) -> str:
     """Hash of all that computes the run."""
-    parts = [source_hash(f"mpm_verify.cases.{run.case}.execute")]
+    own = is_file(run.case)
+    parts = [derived(Path(run.case)) if own else source_hash(f"mpm_verify.cases.{run.case}.execute")]
     parts += [identity(package, getattr(run, field)) for field, package in plugins.items()]
     return hashlib.sha256(" ".join(parts).encode()).hexdigest()
 
@@ -83,8 +84,8 @@ def _own(package: str, specification: str, plugin: type) -> str:
         text = own.derived(made) + source_hash(own.__name__) + identity(MATERIALS, made.material)
     else:
         text = derived(Path(split(specification)[0]))
-        text += _rate(made.rate) if hasattr(made, "rate") else ""
-        text += energy(made) if hasattr(made, "energy") else ""
+        text += _rate(made.rate) if getattr(made, "rate", None) else ""
+        text += energy(made) if getattr(made, "energy", None) else ""
     return hashlib.sha256(text.encode()).hexdigest()
 
 

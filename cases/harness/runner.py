@@ -10,11 +10,13 @@ from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExe
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from multiprocessing.queues import SimpleQueue as Queue
+from os import _exit  # before a user's file is executed, see solver/own_file.py
 from pathlib import Path
 from typing import Any, ClassVar, TypeVar
 
 from mpm_verify.cases.harness.contract import case_named
 from mpm_verify.cases.harness.store import Store, StoreError
+from mpm_verify.solver.plugins import is_file
 
 T = TypeVar("T")
 Run = Any  # of any case: digest, case, cost; Results and Studies likewise
@@ -118,6 +120,8 @@ def run_study(
         raise RunnerError("not enough memory; try --jobs 1 or fewer cells; stored runs are kept") from error
     if lost:
         (run, defect), more = lost[0], f", and in {len(lost) - 1} more" if lost[1:] else ""
+        if is_file(run.case):
+            raise RunnerError(f"{defect}; this was the run {run}{more}; the other runs are stored") from defect
         raise RunnerError(f"a defect of verify in {run}{more}: {defect!r}; the other runs are stored", True) from defect
     return stored(study, store)
 
@@ -142,7 +146,7 @@ def stored(study: Study, store: Store) -> dict[str, Result]:
 
 
 @contextmanager
-def process_pool(jobs: int) -> Iterator[tuple[ProcessPoolExecutor, Callable[[], list[tuple[str, float]]]]]:
+def process_pool(jobs: int, case: str) -> Iterator[tuple[ProcessPoolExecutor, Callable[[], list[tuple[str, float]]]]]:
     """Worker processes that end with this one, and a function that gives their news since it was last called.
 
     Spawned: a fork of a process that has used OpenMP threads hangs.
@@ -157,7 +161,7 @@ def process_pool(jobs: int) -> Iterator[tuple[ProcessPoolExecutor, Callable[[], 
         return items
 
     others = set(multiprocessing.active_children())
-    executor = ProcessPoolExecutor(jobs, mp_context=context, initializer=begin, initargs=(os.getpid(), news))
+    executor = ProcessPoolExecutor(jobs, mp_context=context, initializer=begin, initargs=(os.getpid(), news, case))
     try:
         yield executor, heard
     except BaseException:  # Ctrl-C among them: nobody waits for runs whose Results nobody will take
@@ -168,8 +172,8 @@ def process_pool(jobs: int) -> Iterator[tuple[ProcessPoolExecutor, Callable[[], 
         executor.shutdown(cancel_futures=True)
 
 
-def begin(parent: int, news: "Queue[tuple[str, float]]") -> None:
-    """First thing in a worker: where to tell news, and a watch over the parent.
+def begin(parent: int, news: "Queue[tuple[str, float]]", case: str) -> None:
+    """First thing in a worker: where to tell news, a watch over the parent, and the records that come from a file.
 
     A worker that outlived its parent would do a run that the parent's successor does too.
     """
@@ -179,6 +183,7 @@ def begin(parent: int, news: "Queue[tuple[str, float]]") -> None:
     def watch() -> None:
         while os.getppid() == parent:
             time.sleep(0.2)
-        os._exit(1)
+        _exit(1)
 
     threading.Thread(target=watch, daemon=True).start()
+    case_named(case)

@@ -23,9 +23,10 @@ from pydantic import TypeAdapter, ValidationError
 
 from mpm_verify.cases.harness.contract import adapters
 from mpm_verify.cases.harness.study import FORMAT, Arrays
-from mpm_verify.solver.plugins import CASES, available
+from mpm_verify.solver.plugins import CASES, available, is_file
 
 HOUR = 3600.0
+OTHER = f"{{}} has format {{}}, this version reads {FORMAT}; use another --out folder"
 BROKEN = "{} is broken and was left as it is; move it away, and what it held is made again"
 
 
@@ -48,12 +49,16 @@ def case_of(folder: Path) -> str:
     path = folder / "study.json"
     try:
         data = json.loads(path.read_bytes())
-        case = data.get("case") if isinstance(data, dict) else None
+        case, found = (data.get("case"), data.get("format")) if isinstance(data, dict) else (None, FORMAT)
     except FileNotFoundError as error:
         raise StoreError(f"{folder} is no study folder: it holds no study.json") from error
     except (OSError, ValueError, RecursionError) as error:
         raise StoreError(BROKEN.format(path)) from error
-    if case not in available(CASES):
+    if found != FORMAT:
+        raise StoreError(OTHER.format(path, found))
+    if is_file(str(case)) and not Path(str(case)).exists():
+        raise StoreError(f"{path} is of the case in {case}, which is not there any more")
+    if case not in available(CASES) and not is_file(str(case)):
         known = ", ".join(available(CASES))
         raise StoreError(f"{path} is of the case {case}, and this version has {known}; use another --out folder")
     return str(case)
@@ -115,12 +120,10 @@ class Store:
         try:
             data = json.loads(path.read_bytes())
             if data.get("format") != FORMAT:
+                raise StoreError(OTHER.format(path, data.get("format")))
+            if data.get("case", self.case) != self.case:
                 raise StoreError(
-                    f"{path} has format {data.get('format')}, this version reads {FORMAT}; use another --out folder"
-                )
-            if data.get("case") != self.case:
-                raise StoreError(
-                    f"{path.parent} holds the case {data.get('case')}, not {self.case}; use another --out folder"
+                    f"{self.folder} holds the case {data['case']}, not {self.case}; use another --out folder"
                 )
             return adapter.validate_python(data)
         except FileNotFoundError as error:

@@ -20,9 +20,12 @@ Arrays = dict[str, Any]  # arrays of a run by name
 Head = tuple[tuple[str, Any], ...]  # names and values of all other fields of a Run: what a refinement is of
 
 
-def axis(default: Any, text: str, plugins: str = "") -> Any:
-    """A field of a Run: its default, what it is (help of its option), and the package whose plug-ins it names."""
-    return field(default=default, metadata={"help": text, "plugins": plugins})
+def axis(default: Any, text: str, plugins: str = "", choices: tuple[str, ...] = ()) -> Any:
+    """A field of a Run: its default, what it is (help of its option), and what completes it.
+
+    That is the package whose plug-ins it names, or the words that it may be.
+    """
+    return field(default=default, metadata={"help": text, "plugins": plugins, "choices": choices})
 
 
 @dataclass(frozen=True)
@@ -132,7 +135,7 @@ class Study(Generic[R]):
     """The runs of a case and what is declared of them before they run. `command` repeats it.
 
     `axes` are the fields that it varies, `words` what it is for, `finish` how many runs must come to their end, of a
-    case that counts them.
+    case that counts them. `made` names what it was built from, see cases/harness/reuse.py.
     """
 
     name: str
@@ -144,6 +147,7 @@ class Study(Generic[R]):
     words: tuple[str, ...] = ()
     finish: int = 0
     case: str = ""
+    made: str = ""
     format: int = FORMAT
 
 

@@ -23,6 +23,7 @@ from typing import Any
 from mpm_verify.cases.harness.build import Asked, union
 from mpm_verify.cases.harness.shipped import shipped, where
 from mpm_verify.cases.harness.study import Study
+from mpm_verify.solver.plugins import meant
 
 KEYS = ("case", "title", "words", "finish", "replicates", "run", "sweep", "part")
 CASE = "column"
@@ -31,7 +32,8 @@ CASE = "column"
 def read(source: str, command: str) -> Study[Any]:
     """The study of a file, or of a shipped name. Raises ValueError with one line for what is wrong with it."""
     if not source.endswith(".toml") and source not in shipped():
-        raise ValueError(f"no study {source!r}; choose from {', '.join(shipped())}, or give a file: path/to/own.toml")
+        near, names = meant(source, shipped()), ", ".join(shipped())
+        raise ValueError(f"no study {source!r}{near}; choose from {names}, or give a file: path/to/own.toml")
     path = Path(source) if source.endswith(".toml") else where(source)
     try:
         content = tomllib.loads(path.read_text(encoding="utf-8-sig"))
@@ -84,7 +86,7 @@ def known(content: dict[str, Any], allowed: tuple[str, ...], part: str) -> None:
     """Raises ValueError for a key that is not allowed."""
     for key in content:
         if key not in allowed:
-            raise ValueError(f"{part} has {key!r}, and may have {', '.join(allowed)}")
+            raise ValueError(f"{part} has {key!r}{meant(key, allowed)}, and may have {', '.join(allowed)}")
 
 
 def table(content: dict[str, Any], part: str) -> dict[str, Any]:

@@ -9,7 +9,6 @@ from typing import Any
 
 from mpm_verify.cases.harness.build import Asked
 from mpm_verify.cases.judging.records import Expectation
-from mpm_verify.cases.mms.execute import execute
 from mpm_verify.cases.mms.expectations import JUDGED_QUANTITY, expected
 from mpm_verify.cases.mms.run import AXES, NORMS, QUANTITIES, QUICK, Result, Run
 from mpm_verify.cases.mms.time_step import check_time_steps
@@ -24,12 +23,11 @@ from mpm_verify.solver.plugins import (
     create,
     is_file,
     label,
-    load,
 )
 from mpm_verify.solver.plugins import canonical as canonical_name
 from mpm_verify.solver.stress_update import check_stress_update
 
-__all__ = ["AXES", "JUDGED", "NORMS", "QUANTITIES", "QUICK", "Result", "Run", "execute"]
+__all__ = ["AXES", "JUDGED", "NORMS", "QUANTITIES", "QUICK", "Result", "Run"]
 
 JUDGED = (JUDGED_QUANTITY,)
 SCHEME = {"transfer": "flip", "stress": "usl", "layout": "uniform"}  # of which expectations are registered
@@ -49,7 +47,7 @@ def canonical(values: dict[str, Any]) -> dict[str, Any]:
     values["material"] = canonical_name(MATERIALS, values.get("material") or create(SOLUTIONS, solution).material)
     values["transfer"] = canonical_name(TRANSFERS, values.get("transfer", Run.transfer))
     values["layout"] = canonical_name(LAYOUTS, values.get("layout", Run.layout))
-    load(METHODS, values.get("method", Run.method).partition(":")[0])
+    values["method"] = canonical_name(METHODS, values.get("method", Run.method))
     check_stress_update(values.get("stress", Run.stress))
     return values
 

@@ -23,7 +23,7 @@ from mpm_verify.cases.mms.deviations import (
 )
 from mpm_verify.cases.mms.run import QUANTITIES
 from mpm_verify.solver.plugins import MATERIALS, METHODS, SOLUTIONS, available, create, is_file, load, split
-from mpm_verify.solver.weights import Promise
+from mpm_verify.solver.promise import Promise
 
 JUDGED_QUANTITY = ("u", "rms")
 JUDGED_PPC = (4, 9)

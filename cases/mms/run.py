@@ -2,11 +2,12 @@
 
 from dataclasses import dataclass, field
 from math import inf, isqrt
-from typing import ClassVar
+from typing import ClassVar, get_args
 
 from mpm_verify.cases.harness.study import ResultRecord, RunRecord, axis
 from mpm_verify.mms.blind_spots import BlindSpot
 from mpm_verify.solver.plugins import LAYOUTS, MATERIALS, METHODS, SOLUTIONS, TRANSFERS, label
+from mpm_verify.solver.stress_update import Stress
 
 QUANTITIES = ("u", "v", "F", "sigma")
 NORMS = ("rms", "max", "final", "printed")
@@ -36,7 +37,9 @@ class Run(RunRecord):
         "the report has an axis of time.",
     )
     transfer: str = axis("flip", "Transfer between particles and grid.", TRANSFERS)
-    stress: str = axis("usl", "When stress is updated: usl, musl or usf (last, modified last, first).")
+    stress: str = axis(
+        "usl", "When stress is updated: usl, musl or usf (last, modified last, first).", choices=get_args(Stress)
+    )
     staggered: bool = axis(True, "Start v half a step before x.")
     force: bool = axis(False, "Run time steps above the stability limit too.")
     offset: tuple[float, float] = axis((0.0, 0.0), "Shift of the particles, in fractions of their spacing.")

@@ -17,12 +17,11 @@ from math import pi
 from typing import Any
 
 from mpm_verify.cases.judging.records import Expectation
-from mpm_verify.cases.wave_bar.execute import execute
 from mpm_verify.cases.wave_bar.run import AXES, QUICK, Result, Run
 from mpm_verify.solver.plugins import MATERIALS, METHODS, TRANSFERS, create, label, split
 from mpm_verify.solver.plugins import canonical as canonical_name
 
-__all__ = ["AXES", "QUICK", "Result", "Run", "execute"]
+__all__ = ["AXES", "QUICK", "Result", "Run"]
 
 SMALL = 1e-4  # amplitude up to which the bar is linear
 HATS = ("mpm", "gimp", "cpgimp", "cpdi", "cpdi2")  # whose weights are those of hats at the quarter points

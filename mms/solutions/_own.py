@@ -38,6 +38,16 @@ NO_NUMBERS = (str, bytes, bool, np.bool_, complex, np.complexfloating, np.ndarra
 ROOM = 0.25  # of the largest displacement: how much further than the exact one a free edge may move
 
 
+def edges(solution: Any) -> Any:
+    """What the boundary does, in a body of the solution's own material."""
+    from mpm_verify.mms.edges import examine
+    from mpm_verify.mms.manufacture import manufacture
+    from mpm_verify.solver.plugins import MATERIALS, create
+
+    law = create(MATERIALS, solution.material)
+    return examine(solution, manufacture(solution, law, law.rho0), law)
+
+
 class Own:
     """The contract of a solution, from the two functions of a file; subclasses have its parameters as fields.
 
@@ -127,6 +137,7 @@ class Own:
     C = property(lambda self: self.domain["speed"])
     material = property(lambda self: self.domain["material"])
     order = property(lambda self: self.domain.get("order"))
+    edges = cached_property(edges)
 
     @property
     def boundary(self) -> str | tuple[str, ...]:
@@ -151,16 +162,6 @@ class Own:
             return 0.0
         room = (1 + ROOM) * self.edges.reach
         return room if free.all() else room * free
-
-    @cached_property
-    def edges(self) -> Any:
-        """What the boundary does, in a body of the file's own material."""
-        from mpm_verify.mms.edges import examine
-        from mpm_verify.mms.manufacture import manufacture
-        from mpm_verify.solver.plugins import MATERIALS, create
-
-        law = create(MATERIALS, self.material)
-        return examine(self, manufacture(self, law, law.rho0), law)
 
     def layout(self, dx: float, ppc: int, offset: Offset = CENTRED) -> Layout:
         """Square domains, `ppc` in a cell of side dx."""
@@ -207,6 +208,8 @@ def completed(path: Path, plugin: Any) -> type:
     """A class of a user's file, with what checks ask for besides; its displacement is asked for once a process."""
     plugin.path = path
     plugin.order = getattr(plugin, "order", None)
+    plugin.edges = cached_property(edges)
+    plugin.edges.__set_name__(plugin, "edges")
     if plugin.__hash__:
         plugin.displacement = cache(plugin.displacement)
     chosen: type = plugin

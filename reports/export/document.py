@@ -5,6 +5,7 @@ that name its refinement. `schema` derives the JSON schema from the records belo
 """
 
 import json
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from math import isfinite
 from pathlib import Path
@@ -19,11 +20,13 @@ from mpm_verify.cases.harness.study import ResultRecord
 from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.cases.judging.records import Ended
 from mpm_verify.cases.judging.stall import Cause, Stall
-from mpm_verify.reports.frames import Record, joined
+from mpm_verify.reports.frames import USUAL, Record, joined
 from mpm_verify.reports.sentences import commands, failures, stalls
 from mpm_verify.solver.failure import Failure
+from mpm_verify.solver.plugins import label
 
 VERSION = 3
+REFINEMENT_ROWS = ("VerdictRow", "ShownRow")
 Row = dict[str, Any]
 
 
@@ -155,7 +158,7 @@ def document(record: Record, page: Path | None, more: Row) -> str:
     study, found = record.study, record.analysis
     content = {
         "version": VERSION,
-        "case": study.case,
+        "case": label(study.case),
         "study": study.name,
         "title": study.title,
         "outcome": str(found.outcome),
@@ -174,7 +177,6 @@ def document(record: Record, page: Path | None, more: Row) -> str:
 def verdict(record: Record, finding: Finding) -> Row:
     """A judged quantity; `code`, `numbers`, `failed` and `wanted` are what `reason` says in words."""
     study, expectation, r = record.study, finding.plan.expectation, finding.verdict.reason
-    order = expectation.order if expectation else None
     order = expectation.order if expectation else None
     row = {
         "expected": expectation.kind if expectation and order is None else order,
@@ -279,17 +281,34 @@ def finite(value: Any) -> Any:
 
 def schema(case: str) -> Row:
     """JSON schema (draft 2020-12) of the document of a case. Raises ValueError for another name."""
-    fields = TypeAdapter(case_named(case).Run).json_schema(mode="serialization")["properties"]
+    contract = case_named(case)
+    fields = TypeAdapter(contract.Run).json_schema(mode="serialization")["properties"]
     whole = TypeAdapter(Document).json_schema(mode="serialization")
-    for name, definition in whole["$defs"].items():
+    for definition in whole["$defs"].values():
         definition["additionalProperties"] = False
-        if name in ("RunRow", "VerdictRow", "ShownRow"):
-            clash = definition["properties"].keys() & fields.keys()
-            if clash:
-                raise ValueError(f"the Run of {case} has the field {sorted(clash)[0]!r}, a name of {name}")
-            definition["properties"] |= {key: nullable(field) for key, field in fields.items()}
+    needed = {"RunRow": list(fields)} | {name: [key for key in USUAL if key in fields] for name in REFINEMENT_ROWS}
+    for name, keys in needed.items():
+        definition = whole["$defs"][name]
+        clash = definition["properties"].keys() & fields.keys()
+        if clash:
+            raise ValueError(f"the Run of {case} has the field {sorted(clash)[0]!r}, a name of {name}")
+        definition["properties"] |= {key: nullable(field) for key, field in fields.items()}
+        definition["required"] += keys
+    if contract.quantities:
+        norms = exactly(contract.norms, {"type": "number"})
+        errors = {"anyOf": [exactly(contract.quantities, norms), {"type": "null"}]}
+        whole["$defs"]["RunRow"]["properties"]["errors"] = errors
     whole["properties"]["version"] = {"const": VERSION}
+    whole["additionalProperties"] = False
     return {"$schema": "https://json-schema.org/draft/2020-12/schema"} | whole | {"title": f"verify {case} --json"}
+
+
+def exactly(keys: Sequence[str], value: Row) -> Row:
+    """An object that has these keys and no other, with values of one kind."""
+    return {
+        "type": "object", "properties": dict.fromkeys(keys, value), "required": list(keys),
+        "additionalProperties": False,
+    }  # fmt: skip
 
 
 def nullable(field: Row) -> Row:

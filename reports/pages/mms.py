@@ -128,8 +128,11 @@ def _maybe(add: Add, name: str, figure: Figure | None, alt: str) -> Image | None
 
 
 def _field(record: Record, run: Run, add: Add) -> Image | None:
-    """The error field of one run; None where its particles are not stored."""
-    arrays = record.arrays(run)
+    """The error field of one run; None where its particles are not stored, or cannot be read."""
+    try:
+        arrays = record.arrays(run)
+    except StoreError:
+        return None
     if not ({"corners"} <= arrays.keys() or {"x", "F", "r0"} <= arrays.keys()) or "error_u" not in arrays:
         return None
     most = words.sci(float(arrays["error_u"].max()))

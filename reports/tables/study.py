@@ -27,7 +27,9 @@ def write(record: Record, folder: Path) -> None:
 
 
 def frames(record: Record) -> dict[str, pd.DataFrame]:
-    """All tables by name; one without rows is none."""
+    """All tables by name; one without rows is none. Of a study without refinements there are the runs alone."""
+    if not record.study.plans:
+        return {"runs": pd.DataFrame(runs(record))}
     made = {
         "verdicts": verdicts(record),
         "errors": errors(record),
@@ -112,10 +114,10 @@ def runs(record: Record) -> Rows:
     """A row a run of the study, done or not, with every parameter."""
     rows = []
     for run in record.study.runs:
-        row: dict[str, Any] = flat(asdict(run)) | {"status": "not run"}
         result = record.result(run)
+        row: dict[str, Any] = {"status": result.status if result else "not run"}
         if result is not None:
-            row |= {"status": result.status, "steps": result.steps, "particles": result.particles, "dt": result.dt}
+            row |= {"time_steps": result.steps, "particles": result.particles, "dt": result.dt}
             row |= {"wall_s": result.wall_s, "cpu_s": result.cpu_s, "peak_memory_mb": result.peak_memory_mb}
             row |= {"crossings": result.crossings, "gap": result.gap}
             row |= {"digest": result.digest}
@@ -124,7 +126,7 @@ def runs(record: Record) -> Rows:
                 row |= {"failure": str(failure.kind), "reason": failures.cause(failure)}
                 row |= {"failed_step": failure.step, "failed_particle": failure.particle}
                 row |= {"failed_cell": " ".join(map(str, failure.cell)) if failure.cell else None}
-        rows.append(row)
+        rows.append(joined(flat(asdict(run)), row))
     return rows
 
 

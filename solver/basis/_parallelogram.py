@@ -1,4 +1,4 @@
-"""What the two fills of CPDI share: half sides of a parallelogram, whether it fits, and its weights by its corners."""
+"""Parallelograms around particles, in kernels: their half sides, where they end, and the weights of their corners."""
 
 from mpm_verify.solver._jit import kernel
 from mpm_verify.solver.weights import bilinear, outside

@@ -12,23 +12,26 @@ Replicates = Annotated[
     int,
     typer.Option(help="Runs of each point, with the particles elsewhere in their cells: an order with its scatter."),
 ]
-Quick = Annotated[bool, typer.Option("--quick", help="8,12,16,24,32 cells with 4 particles each.")]
+Quick = Annotated[
+    bool, typer.Option("--quick", help="8,12,16,24,32 cells with 4 particles each, and no page: a verdict in seconds.")
+]
 
 
 def mms(asked: dict[str, list[str]], replicates: int, quick: bool, out: Path | None, **more: Any) -> int:
     """Convergence of MPM and its family to a manufactured solution: errors, observed orders, verdict, HTML report."""
-    from mpm_verify.verify.run import Settings, command, conduct, named, usage
+    from mpm_verify.verify.run import Settings, conduct, study_of, usage
 
     with usage():
-        from mpm_verify.cases.harness.build import Asked, build
+        from mpm_verify.cases.harness.build import Asked
 
-        study = build(Asked("mms", values(Run, asked), replicates, quick), command())
+        study, folder = study_of(Asked("mms", values(Run, asked), replicates, quick), out)
     usual = (QUICK if quick else AXES)["cells"]
     chosen = sorted({run.cells for run in study.runs})
     if "cells" not in asked and chosen != list(usual):
         cells = ",".join(map(str, chosen))
-        typer.echo(f"cells chosen: {cells}, which fill the body as {','.join(map(str, usual))} do not", err=True)
-    return conduct(study, Settings(named(study, out), **more))
+        wanted = ",".join(map(str, usual))
+        typer.echo(f"cells chosen: {cells}, which fill the body as {wanted} do not; --cells takes others", err=True)
+    return conduct(study, Settings(folder, quick=quick, **more))
 
 
 def add(app: typer.Typer) -> None:

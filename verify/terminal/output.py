@@ -10,7 +10,10 @@ import typer
 
 @contextmanager
 def printing() -> Iterator[None]:
-    """Whatever is printed inside goes nowhere once nobody reads it; a full disk is one line."""
+    """Whatever is printed inside goes nowhere once nobody reads it; a full disk is one line.
+
+    An error that names a file is none of standard output, and is left as it is.
+    """
     try:
         yield
         if sys.stdout is not None:
@@ -18,6 +21,8 @@ def printing() -> Iterator[None]:
     except BrokenPipeError:
         silence()
     except OSError as error:
+        if error.filename is not None:
+            raise
         silence()
         raise typer.TyperException(f"cannot write to standard output: {error.strerror}") from error
 

@@ -42,7 +42,7 @@ class Bar(Silent):
 @contextmanager
 def progress(waiting: Sequence[Run], cost: Callable[[Run], float]) -> Iterator[Silent]:
     """A Bar on a terminal, and Silent elsewhere or where nothing is to be done."""
-    if not waiting or not sys.stderr.isatty():
+    if not waiting or sys.stderr is None or not sys.stderr.isatty():
         yield Silent()
         return
     from rich.console import Console
