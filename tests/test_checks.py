@@ -215,7 +215,8 @@ def test_exit_codes_and_what_is_printed(
     assert "A turn" in out
     missed = sum(check is not GOOD for check in checks)
     told = f"{missed} did not pass" if missed else "all pass"
-    assert (f"{len(checks)} checks: {told}." if checks else "nothing is judged.") in words
+    plural = "s" * (len(checks) != 1)
+    assert (f" {len(checks)} check{plural}: {told}." if checks else "nothing is judged.") in words
     assert out.rstrip().endswith("report.html")
     assert ("FAIL turn: shear stress is 0.2, expected at most 0.1 (symmetry)" in words) == (BAD in checks)
     assert ("ERROR shear: order is nan, expected 2 within 0.1 (leading term)" in words) == (LOST in checks)

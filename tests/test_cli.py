@@ -17,7 +17,7 @@ import pytest
 
 from mpm_verify.cases.harness.shipped import shipped
 from mpm_verify.cases.harness.store import Store
-from mpm_verify.cases.mms import case as mms
+from mpm_verify.cases.mms import execute as mms
 from mpm_verify.cases.mms.run import NORMS, QUANTITIES, Result
 from mpm_verify.solver.plugins import available
 from mpm_verify.verify.main import application, main
@@ -241,14 +241,22 @@ def test_report_of_a_broken_result(verify: Verify, stored: Path, text: str, said
     assert content(stored) == before
 
 
-def test_report_with_missing_arrays(verify: Verify, stored: Path) -> None:
+def test_report_with_missing_arrays(verify: Verify, tmp_path: Path) -> None:
+    """They cost figures alone: verdicts and tables stand in the Results."""
+    stored = fixtures.make(tmp_path / "stored", ("cpdi",), largest=16)
+    with fixtures.sources():
+        assert verify("report", str(stored)).code == 0
+    whole = {file.name for file in (stored / "figures").iterdir()}
+    before = (stored / "tables" / "verdicts.csv").read_bytes()
     for file in (stored / "runs").glob("*.npz"):
         file.unlink()
-    before = content(stored / "runs")
+    results = content(stored / "runs")
     with fixtures.sources():
-        line = verify("report", str(stored)).line
-    assert "delete it and its .json file to run that run again" in line
-    assert content(stored / "runs") == before
+        assert verify("report", str(stored)).code == 0
+    assert content(stored / "runs") == results
+    assert (stored / "tables" / "verdicts.csv").read_bytes() == before
+    left = {file.name for file in (stored / "figures").iterdir()}
+    assert whole - left == {f"error_field_cpdi.{kind}" for kind in ("svg", "pdf", "png")}
 
 
 def test_not_enough_memory(verify: Verify, quickly: None, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -13,7 +13,7 @@ import fixtures_study as fixtures
 import pytest
 from jsonschema import Draft202012Validator, ValidationError
 
-from mpm_verify.cases.mms import case as mms
+from mpm_verify.cases.mms import execute as mms
 from mpm_verify.cases.mms.run import NORMS, QUANTITIES, Result
 from mpm_verify.reports.export.document import VERSION, schema
 from mpm_verify.solver.failure import Failure, FailureKind

@@ -4,12 +4,11 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from mpm_verify.cases.column.sweep import run_of
-from mpm_verify.cases.mms.sweep import Sweep, build
 
 from mpm_verify.cases.column.run import ColumnRun
-from mpm_verify.cases.harness.study import Run
-from mpm_verify.cases.mms.case import execute
+from mpm_verify.cases.harness.build import Asked, build
+from mpm_verify.cases.mms.execute import execute
+from mpm_verify.cases.mms.run import Run
 from mpm_verify.solver import plugins
 from mpm_verify.solver.plugins import (
     CASES,
@@ -55,16 +54,18 @@ def test_the_same_numbers(tmp_path: Path, field: str, package: str) -> None:
     assert result.errors == shipped.errors
 
 
-@pytest.mark.parametrize("field", ["law", "smoothing", "rate"])
+@pytest.mark.parametrize("field", ["material", "smoothing", "rate"])
 def test_the_same_column(tmp_path: Path, field: str) -> None:
-    from mpm_verify.cases.column.case import execute
+    from mpm_verify.cases.column.execute import execute
 
-    short = ColumnRun(method="mpm", law="hypoelastic:rate=jaumann", smoothing="fbar", cells=2, ppc=1, duration=0.01)
+    short = ColumnRun(
+        method="mpm", material="hypoelastic:rate=jaumann", smoothing="fbar", cells=2, ppc=1, duration=0.01
+    )
     if field == "rate":
         short = replace(short, smoothing="none")
-        changes = {"law": f"hypoelastic:rate={elsewhere(tmp_path, RATES, 'jaumann')}"}
-    elif field == "law":
-        changes = {"law": elsewhere(tmp_path, MATERIALS, "hypoelastic") + ":rate=jaumann"}
+        changes = {"material": f"hypoelastic:rate={elsewhere(tmp_path, RATES, 'jaumann')}"}
+    elif field == "material":
+        changes = {"material": elsewhere(tmp_path, MATERIALS, "hypoelastic") + ":rate=jaumann"}
     else:
         changes = {"smoothing": elsewhere(tmp_path, SMOOTHINGS, "fbar")}
     own = replace(short, **changes)
@@ -79,16 +80,17 @@ def test_parameters_and_paths(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
     elsewhere(tmp_path, RATES, "jaumann", "rate.py")
     monkeypatch.chdir(tmp_path)
     assert create(SOLUTIONS, "own.py:A=0.02,phase=0.5").A == 0.02
-    study = build(Sweep(solution="own.py:A=0.02", cells=(8,), ppc=(4,)), "verify mms", "mms")
+    study = build(Asked("mms", {"solution": ("own.py:A=0.02",), "cells": (8,), "ppc": (4,)}), "verify mms", "mms")
     assert {run.solution for run in study.runs} == {f"{tmp_path}/own.py:A=0.02"}
     assert study.title == "CPDI against the manufactured solution own:A=0.02"
     assert create(MATERIALS, "mohr_coulomb:rate=rate.py").rate == f"{tmp_path}/rate.py"
-    assert run_of({"law": "mohr_coulomb", "method": "mpm"}).method == "mpm"
     assert label("dir/own.py:A=1") == "own:A=1"
     assert label("cpdi:limit=1") == "cpdi:limit=1"
     with pytest.raises(ValueError, match=r"^own.py has no parameter 'B'; it has L, C, A, n, axis, phase$"):
         create(SOLUTIONS, "own.py:B=1")
-    with pytest.raises(ValueError, match=r"^no case 'own.py'; choose from column, mms$"):
+    with pytest.raises(
+        ValueError, match=r"^no case 'own.py'; choose from column, element, mms, objectivity, wave_bar$"
+    ):
         load(CASES, "own.py")
 
 

@@ -5,8 +5,8 @@ import pytest
 from mpm_verify.cases.harness.runner import InProcess, run_study
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.cases.harness.verdicts import findings
-from mpm_verify.cases.mms.case import execute
 from mpm_verify.cases.mms.deviations import RECORDED
+from mpm_verify.cases.mms.execute import execute
 from mpm_verify.cases.mms.methods import build_methods
 from mpm_verify.cases.mms.run import Result, Run
 from mpm_verify.solver.plugins import MATERIALS, METHODS, SOLUTIONS, available, canonical, create

@@ -100,7 +100,7 @@ def study(
     words = [f"{key}={value!r}" for key, value in axes.items()]
     command = f"mpm_verify.study({', '.join([repr(case), *words])})"
     asked: Study[Any] = build(Asked(case, values, replicates, quick), command)
-    settings = Settings(named(asked, Path(out) if out else None), jobs, threads, yes=True)
+    settings = Settings(named(asked, Path(out) if out else None), jobs=jobs, threads=threads, yes=True)
     store = Store(settings.folder, case)
     affordable(asked, store, settings)
     with store.locked():

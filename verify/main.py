@@ -20,6 +20,7 @@ Verification of the material point method: manufactured solutions, observed orde
 
 Commands (verify COMMAND --help says more):
 {commands}
+  OWN.py       A case of your own, from its file.
 
 Options: -h, --help, --version, --install-completion, --show-completion
 
@@ -78,6 +79,9 @@ def application(asked: str = "") -> object:
                       context_settings={"help_option_names": ["-h", "--help"]})  # fmt: skip
     app.callback()(root)
     known = files()
+    if asked.endswith(".py"):
+        import_module("mpm_verify.verify.commands._case").add(app, asked)
+        return app
     for name in [asked] if asked in known else known:
         if known[name].startswith(CASES):
             import_module("mpm_verify.verify.commands._case").add(app, name)
@@ -96,6 +100,8 @@ def main() -> None:
     A defect of this program ends with 4, and with its traceback: 1 would read as a verdict.
     """
     asked = sys.argv[1:2]
+    if "_VERIFY_COMPLETE" in os.environ:  # a shell asks what it may complete
+        sys.exit(called(""))
     if asked in ([], ["-h"], ["--help"]):
         sys.exit(told(help_text(), 0 if asked else USAGE))
     if asked == ["--version"]:
@@ -157,6 +163,9 @@ def complain(message: str, code: int = USAGE) -> int:
 
         near = meant(message.split("'")[1], files())
         message = f"{message.removesuffix('.')}{near}; choose from {', '.join(files())}"
+    before, possible, names = message.partition("(Possible options: ")
+    if possible:
+        message = f"{before}(did you mean {names.removesuffix(')')}?)"
     if sys.stderr is None:  # print() would take standard output instead
         return code
     with contextlib.suppress(OSError, ValueError, AttributeError):

@@ -5,7 +5,7 @@ import shlex
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
@@ -33,6 +33,7 @@ class Settings:
     """Settings of where and how a study is run and told. `show` prints it; the usual is that of the case."""
 
     folder: Path
+    _: KW_ONLY
     jobs: int | None = None
     threads: int = 1
     json_output: bool = False
@@ -112,10 +113,15 @@ def draw(record: "Record", settings: Settings) -> Path | None:
 
 def page_of(record: "Record", vtk: bool = False, **chosen: Any) -> Path:
     """Draw the page of the case: `page` of reports/pages/<case>.py, or what every case can have."""
-    name = f"mpm_verify.reports.pages.{record.study.case}"
-    module = import_module(name if find_spec(name) else "mpm_verify.reports.pages._plain")
+    module = of_case("reports.pages", record) or import_module("mpm_verify.reports.pages._plain")
     path: Path = module.page(record, vtk=vtk, **chosen)
     return path
+
+
+def of_case(room: str, record: "Record") -> Any | None:
+    """The module of a room that has the name of the record's case, if there is one."""
+    name = f"mpm_verify.{room}.{record.study.case}"
+    return import_module(name) if record.study.case.isidentifier() and find_spec(name) else None
 
 
 def export(record: "Record", settings: Settings, page: Path | None) -> None:
@@ -144,16 +150,15 @@ def export(record: "Record", settings: Settings, page: Path | None) -> None:
 
 def more_of(record: "Record") -> dict[str, Any]:
     """Additions of a case to its JSON document: `more` of reports/export/<case>.py, if it is there."""
-    name = f"mpm_verify.reports.export.{record.study.case}"
-    found: dict[str, Any] = import_module(name).more(record) if find_spec(name) else {}
+    module = of_case("reports.export", record)
+    found: dict[str, Any] = module.more(record) if module else {}
     return found
 
 
 def shown(record: "Record", page: Path | None) -> None:
     """Print: `show` of verify/terminal/<case>.py, or verdicts and checks as every case has them."""
-    name = f"mpm_verify.verify.terminal.{record.study.case}"
-    if find_spec(name):
-        import_module(name).show(record, page)
+    if module := of_case("verify.terminal", record):
+        module.show(record, page)
         return
     from mpm_verify.verify.terminal import checks, table
 
@@ -172,7 +177,7 @@ def compute(study: "Study[Any]", store: Any, settings: Settings) -> dict[str, An
     jobs = min(jobs_of(settings), max(1, len(waiting)))
     with progress(waiting, cost) as bar:
         if jobs > 1 and sum(map(cost, waiting)) > SMALL:
-            with process_pool(jobs) as (executor, heard):
+            with process_pool(jobs, study.case) as (executor, heard):
                 return run_study(study, store, executor, settings.threads, bar.done, lambda: bar.hear(heard()))
         Ticker.tell = staticmethod(lambda news: bar.hear([news]))
         return run_study(study, store, InProcess(), settings.threads, bar.done)

@@ -12,7 +12,7 @@ from pydantic import TypeAdapter, ValidationError
 from mpm_verify.cases.harness.contract import Case, case_named
 from mpm_verify.cases.harness.refinement import complete, refines
 from mpm_verify.cases.harness.study import QuantityPlan, RunRecord, Study, head
-from mpm_verify.solver.plugins import meant
+from mpm_verify.solver.plugins import label, meant
 
 Values = Mapping[str, Sequence[Any]]
 MOST = 10_000  # runs of a study, without those that its judgement adds
@@ -213,7 +213,7 @@ def _default(case: Case, key: str) -> Any:
 
 def named(asked: Asked) -> str:
     """Name of a study: its methods and what is not as usual, so that another one gets a folder of its own."""
-    case, words = asked.contract, [asked.case]
+    case, words = asked.contract, [label(asked.case)]
     values = {key: list(dict.fromkeys(chosen)) for key, chosen in asked.values.items()}
     usual = {item.name: [item.default] for item in fields(case.Run)} | {k: list(v) for k, v in case.axes.items()}
     for key in (key for key in FIRST if key in usual):

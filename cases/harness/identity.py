@@ -47,7 +47,8 @@ def _digest(run: Any, plugins: tuple[str, ...], computed_by: str) -> str:
 
 def sources(run: Any, plugins: Mapping[str, str]) -> str:
     """Source hash of all that computes the run."""
-    parts = [source_hash(f"mpm_verify.cases.{run.case}.execute")]
+    own = is_file(run.case)
+    parts = [derived(Path(run.case)) if own else source_hash(f"mpm_verify.cases.{run.case}.execute")]
     parts += [identity(package, getattr(run, field)) for field, package in plugins.items()]
     return hashlib.sha256(" ".join(parts).encode()).hexdigest()
 

@@ -31,7 +31,7 @@ def study(asked: Asked, command: str, folder: Path) -> Study[Any]:
 
 def named(asked: Asked) -> str:
     """Hash of what is asked for and of the files that build a study of it; empty where a user's file is among them."""
-    given = [value for values in asked.values.values() for value in values]
+    given = [asked.case, *(value for values in asked.values.values() for value in values)]
     if any(isinstance(value, str) and is_file(value) for value in given):
         return ""
     here = Path(__file__).absolute().parents[2]

@@ -16,6 +16,7 @@ from typing import Any, ClassVar, TypeVar
 
 from mpm_verify.cases.harness.contract import case_named
 from mpm_verify.cases.harness.store import Store, StoreError
+from mpm_verify.solver.plugins import is_file
 
 T = TypeVar("T")
 Run = Any  # of any case: digest, case, cost; Results and Studies likewise
@@ -119,6 +120,8 @@ def run_study(
         raise RunnerError("not enough memory; try --jobs 1 or fewer cells; stored runs are kept") from error
     if defects:
         (run, defect), more = defects[0], f", and in {len(defects) - 1} more" if defects[1:] else ""
+        if is_file(run.case):
+            raise RunnerError(f"{defect}; this was the run {run}{more}; the other runs are stored") from defect
         raise RunnerError(f"a defect of verify in {run}{more}: {defect!r}; the other runs are stored", True) from defect
     return stored(study, store)
 
@@ -143,7 +146,7 @@ def stored(study: Study, store: Store) -> dict[str, Result]:
 
 
 @contextmanager
-def process_pool(jobs: int) -> Iterator[tuple[ProcessPoolExecutor, Callable[[], list[tuple[str, float]]]]]:
+def process_pool(jobs: int, case: str) -> Iterator[tuple[ProcessPoolExecutor, Callable[[], list[tuple[str, float]]]]]:
     """Worker processes that end with this one, and a function that gives their news since it was last called.
 
     Spawned: a fork of a process that has used OpenMP threads hangs.
@@ -158,7 +161,7 @@ def process_pool(jobs: int) -> Iterator[tuple[ProcessPoolExecutor, Callable[[], 
         return items
 
     others = set(multiprocessing.active_children())
-    executor = ProcessPoolExecutor(jobs, mp_context=context, initializer=begin, initargs=(os.getpid(), news))
+    executor = ProcessPoolExecutor(jobs, mp_context=context, initializer=begin, initargs=(os.getpid(), news, case))
     try:
         yield executor, heard
     except BaseException:  # Ctrl-C among them: nobody waits for runs whose Results nobody will take
@@ -169,8 +172,8 @@ def process_pool(jobs: int) -> Iterator[tuple[ProcessPoolExecutor, Callable[[], 
         executor.shutdown(cancel_futures=True)
 
 
-def begin(parent: int, news: "Queue[tuple[str, float]]") -> None:
-    """Begin a worker: where to tell news, and a watch over the parent.
+def begin(parent: int, news: "Queue[tuple[str, float]]", case: str) -> None:
+    """Begin a worker: where to tell news, a watch over the parent, and the records that come from a file.
 
     A worker that outlived its parent would do a run that the parent's successor does too.
     """
@@ -183,3 +186,4 @@ def begin(parent: int, news: "Queue[tuple[str, float]]") -> None:
         _exit(1)
 
     threading.Thread(target=watch, daemon=True).start()
+    case_named(case)

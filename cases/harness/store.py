@@ -23,7 +23,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from mpm_verify.cases.harness.contract import adapters
 from mpm_verify.cases.harness.study import FORMAT, Arrays
-from mpm_verify.solver.plugins import CASES, available
+from mpm_verify.solver.plugins import CASES, available, is_file
 
 HOUR = 3600.0
 OTHER = f"{{}} has format {{}}, this version reads {FORMAT}; use another --out folder"
@@ -56,7 +56,9 @@ def case_of(folder: Path) -> str:
         raise StoreError(BROKEN.format(path)) from error
     if found != FORMAT:
         raise StoreError(OTHER.format(path, found))
-    if case not in available(CASES):
+    if is_file(str(case)) and not Path(str(case)).exists():
+        raise StoreError(f"{path} is of the case in {case}, which is not there any more")
+    if case not in available(CASES) and not is_file(str(case)):
         known = ", ".join(available(CASES))
         raise StoreError(f"{path} is of the case {case}, and this version has {known}; use another --out folder")
     return str(case)

@@ -23,6 +23,7 @@ from mpm_verify.cases.judging.stall import Cause, Stall
 from mpm_verify.reports.frames import USUAL, Record, joined
 from mpm_verify.reports.sentences import commands, failures, stalls
 from mpm_verify.solver.failure import Failure
+from mpm_verify.solver.plugins import label
 
 VERSION = 3
 REFINEMENT_ROWS = ("VerdictRow", "ShownRow")
@@ -157,7 +158,7 @@ def document(record: Record, page: Path | None, more: Row) -> str:
     study, found = record.study, record.analysis
     content = {
         "version": VERSION,
-        "case": study.case,
+        "case": label(study.case),
         "study": study.name,
         "title": study.title,
         "outcome": str(found.outcome),

@@ -23,7 +23,7 @@ from mpm_verify.solver.state import Floats
 
 WIDE = 5.4
 SIZE = WIDE, 4.4
-LINES, LINE = 3, 0.22  # of a legend that such a figure has room for; height of one more, inches
+LINES, LINE = 2, 0.24  # of a legend that such a figure has room for; height of one more, inches
 SAND = "#e8d5a3"
 DARK, PALE = "#4a3728", "#d9bf86"  # bands of sand, as in the experiment
 BANDS = 10  # of the column's height

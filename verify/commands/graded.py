@@ -60,7 +60,9 @@ def graded(
             power,
         )
         study = build_graded(plan, command(), name(plan))
-    settings = Settings(named(study, out), jobs, 1, json_output, page=page, dry_run=dry_run, yes=yes, show=show)
+    settings = Settings(
+        named(study, out), jobs=jobs, json_output=json_output, page=page, dry_run=dry_run, yes=yes, show=show
+    )
     return conduct(study, settings)
 
 
