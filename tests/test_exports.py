@@ -138,7 +138,7 @@ def test_a_difference_of_an_end(verify: Call, pair: tuple[Path, Path]) -> None:
 
 def test_what_cannot_be_compared(verify: Call, pair: tuple[Path, Path], tmp_path: Path) -> None:
     assert "--tolerance -1" in one_line(verify("diff", *map(str, pair), "--tolerance", "-1"))
-    assert "no study folder" in one_line(verify("diff", str(pair[0]), str(tmp_path / "none")))
+    assert "not a study folder" in one_line(verify("diff", str(pair[0]), str(tmp_path / "none")))
 
 
 # ---- schemas

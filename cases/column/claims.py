@@ -17,7 +17,7 @@ from mpm_verify.cases.column.experiment import Band, Experiment, experiment
 from mpm_verify.cases.column.run import ColumnRun
 from mpm_verify.solver.state import Floats
 
-LITTLE = 0.01  # of the potential energy there was: what can be seen on a figure of it
+LITTLE = 0.01  # of the initial potential energy: what can be seen on a figure of it
 MARKED = 0.10  # of the largest kinetic energy
 CROWDED = 1.2  # from which crowding on a heap is too small for its material
 CLOSE = 0.05  # of the front

@@ -88,7 +88,7 @@ def material_of(run: ColumnRun) -> Material:
     """Material, with void-strain memory where it has one. Raises ValueError for one that no column can have."""
     material: Any = create(MATERIALS, run.material)
     if material.respond is None:
-        raise ValueError(f"the column must have a material in rate form, with a memory of its path, not {run.material}")
+        raise ValueError(f"the column must have a material in rate form, not {run.material}; choose mohr_coulomb")
     parts = run.void and "void" in material.memory and not material.cohesion
     made: Material = replace(material, void=1.0) if parts else material
     return made

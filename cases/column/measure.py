@@ -1,7 +1,7 @@
 """Measurements of a collapsing column: front, toe and height of the heap, energies, momenta, and what is scaled.
 
 Front: the distance from the wall within which 99 or 99.9 % of the mass lies; single particles fly further. Toe: the
-far end of the heap that hangs together with the wall, in squares of a seventh of the width, by sides or corners.
+far end of the heap that is connected to the wall, in squares of a seventh of the width, by sides or corners.
 Height: below it lie 99 % of the mass of the heap next to the wall, in a strip of a seventh of the width; the profile is
 the same for each strip. A seventh on any grid, so that grids can be compared, unless cells are wider. Crowding: the
 volume V = J V0 that particles keep, over the space in which they are, within the heap. It should be 1; where particles

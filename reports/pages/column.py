@@ -63,14 +63,14 @@ def summary(analysis: ColumnAnalysis, add: Add) -> Section:
         rows.append((words.label(analysis.study, run), *numbers(run, result)))
     notes = (
         "Front and toe are distances from the wall in m: 99 or 99.9 % of the mass lie within the front, and the heap "
-        "that hangs together with the wall ends at its toe. The height is that of the heap next to the wall; “height "
+        "that is connected to the wall ends at its toe. The height is that of the heap next to the wall; “height "
         "falls” is by how much it still fell in the last fifth of the time. A run rests once the kinetic energy that "
-        "the grid sees stays below a ten-thousandth of the potential energy there was; grains of the experiment came "
+        "the grid sees stays below a ten-thousandth of the initial potential energy; grains of the experiment came "
         "to rest after 2.5 to 3.3 √(h₀/g). Area: that below the surface over that of the column; as the surface is "
         "that of 99 % of the mass, by its centres, it is a little too low."
     )
     return Section("runs", "Runs", [*analysis.study.words, notes], tables=[
-        Table("What the runs came to", head, tuple(rows), texts=("outcome",))])  # fmt: skip
+        Table("Results of the runs", head, tuple(rows), texts=("outcome",))])  # fmt: skip
 
 
 def numbers(run: ColumnRun, result: ColumnResult | None) -> tuple[str, ...]:

@@ -33,7 +33,7 @@ def no_rotation(n: Numbers) -> str:
     still = n["rotation_deg"] < ROUND
     how = "Nothing turns" if still else f"The material turns by {figure(n['rotation_deg'])}° at most"
     return (
-        f"{how}, F is its own transpose: domain vectors moved by Fᵀ, FᵀF for F Fᵀ, a wrong polar "
+        f"{how}, F is its own transpose: domain vectors moved by Fᵀ, FᵀF instead of F Fᵀ, a wrong polar "
         "decomposition or stress rate are invisible, and so is the error of domains that stretch but do not turn."
     )
 
@@ -48,7 +48,7 @@ def no_volume(n: Numbers) -> str:
     """Sentence on det F that is 1, or all but 1."""
     change = max(1 - n["J_min"], n["J_max"] - 1)
     how = "det F is 1 everywhere" if change < ROUND else f"det F differs from 1 by {figure(change)} at most"
-    return f"{how}, so a wrong volumetric response (lambda drops out), a missing 1/J and V0 for V are invisible."
+    return f"{how}, so a wrong volumetric response (lambda drops out), a missing 1/J and V0 instead of V are invisible."
 
 
 def begins(part: float, what: str) -> str:
@@ -91,7 +91,7 @@ BLIND: dict[SpotCode, Words] = {
     SpotCode.SHEAR: no_shear,
     SpotCode.ROTATION: no_rotation,
     SpotCode.ORDER: lambda n: (
-        "F and the velocity gradient L commute, so F (I + dt L) for (I + dt L) F is invisible."
+        "F and the velocity gradient L commute, so F (I + dt L) instead of (I + dt L) F is invisible."
     ),
     SpotCode.SPIN: lambda n: "The velocity gradient L is symmetric, so L transposed is invisible.",
     SpotCode.VOLUME: no_volume,

@@ -53,7 +53,7 @@ REMARKS: dict[str, Words] = {
     Code.EXACT: lambda n: f"{n['tests']:g} {'is' if n['tests'] == 1 else 'are'} exact in any number of steps.",
     Code.ORDERS: orders,
     Code.FIRST_ORDER: lambda n: (
-        "First order is expected of this material: it returns along the stress at the end of a step, and costs an "
+        "First order is expected of this material: it returns along the stress at the end of a step, and loses an "
         "order where the direction of the stress turns."
     ),
     Code.RATE_IDLE: lambda n: (
@@ -67,8 +67,8 @@ REMARKS: dict[str, Words] = {
     Code.PATH_UNUSED: lambda n: f"Not used of {n['file']}: {n['columns']}.",
     Code.UNREAD: unread,
     Code.FAILED: failed,
-    Code.AGAINST: lambda n: f"Errors are against: {n['source']}.",
-    Code.AGAINST_OWN: lambda n: f"Errors are against: its own curve with {n['times']:g} times the steps.",
+    Code.AGAINST: lambda n: f"The errors are against the exact curve: {n['source']}.",
+    Code.AGAINST_OWN: lambda n: f"The errors are against its own curve with {n['times']:g} times the steps.",
     Code.ROUND_OFF: lambda n: (
         "The error is round-off at any number of steps: each step is exact here, and there is no order."
     ),

@@ -132,7 +132,7 @@ REMARKS: dict[str, Words] = {
     Code.PRINTED: printed,
     Code.ORDERS: orders,
     Code.INCREMENT: lambda n: (
-        "The strain increment is (F1 - F0) ((F0 + F1)/2)⁻¹. With F0 alone for the mean, which is what a "
+        "The strain increment is (F1 - F0) ((F0 + F1)/2)⁻¹. With F0 alone instead of the mean, which is what a "
         "velocity gradient in the old configuration gives, every rate is of first order: each step by an angle a adds "
         "a volume strain of −a²."
     ),
