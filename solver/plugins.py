@@ -1,6 +1,7 @@
 """Plug-ins: each is a file whose name is the word on the command line; its class has that name in CamelCase.
 
-Any plug-in but a case may be a user's file, path/to/own.py or path/to/own.py:key=value. A package with a module `_own`
+A plug-in may be a user's file, path/to/own.py or path/to/own.py:key=value; of a case, see the contract in
+cases/harness/contract.py. A package with a module `_own`
 makes a class of it in its own way, `_own.load(path)`; of the others the file holds the class.
 """
 
