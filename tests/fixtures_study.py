@@ -1,4 +1,4 @@
-"""A synthetic stored study with the recorded numbers of ARCHITECTURE.md: a report can be tested without a solver."""
+"""A synthetic stored study with the recorded numbers of docs/results.md: a report can be tested without a solver."""
 
 from contextlib import AbstractContextManager
 from pathlib import Path

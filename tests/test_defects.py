@@ -222,7 +222,7 @@ def last_order(results: list[Result]) -> float:
 
 @pytest.mark.parametrize("solution", ["axis_aligned", "clamped_shear"])
 def test_without_a_defect(solution: str) -> None:
-    """PASS, order two; the registered errors of axis_aligned to 2 % (ARCHITECTURE.md)."""
+    """PASS, order two; the registered errors of axis_aligned to 2 % (docs/results.md)."""
     results = sweep(nothing, solution)
     assert verdict(results).outcome is PASS
     assert last_order(results) == pytest.approx(2.0, abs=0.05)

@@ -1,4 +1,4 @@
-"""The whole chain against the recorded table of ARCHITECTURE.md, and the orders that are expected of each solution."""
+"""The whole chain against the recorded table of docs/results.md, and the orders that are expected of each solution."""
 
 import itertools
 import math

@@ -524,7 +524,7 @@ def test_force_runs_a_time_step_above_the_limit() -> None:
 
 
 def test_det_f_is_a_failed_result() -> None:
-    """Classical MPM with one particle a cell, as in the table of ARCHITECTURE.md."""
+    """Classical MPM with one particle a cell, as in the table of docs/results.md."""
     result, arrays = mms.execute(run(method="mpm", cells=16, ppc=1))
     assert (result.status, result.errors) == ("failed", {})
     failure = result.failure

@@ -1,4 +1,4 @@
-"""Deviations of methods from what they promise, on the shipped solutions, as data: all measured, see ARCHITECTURE.md.
+"""Deviations of methods from what they promise, on the shipped solutions, as data: all measured, see docs/methods.md.
 
 What is not here is as `Basis.promises` says: u of order 2, or an error that grows.
 """
@@ -113,7 +113,7 @@ DEVIATIONS: dict[str, dict[str, Deviation]] = {
 # their stall lies beyond, and nothing is registered of it.
 LATER_WITH_9 = {("cpgimp", "swirl"), ("gimp", "generalised_vortex")}
 OWN_MATERIAL = ("expanding_ring",)  # with another its edges are not free of traction, and no order is expected
-# Recorded errors of u in rms: (method, solution, ppc) -> (h, error), table in ARCHITECTURE.md
+# Recorded errors of u in rms: (method, solution, ppc) -> (h, error), table in docs/results.md
 RECORDED = {
     ("cpdi", "axis_aligned", 4): (1 / 128, 1.127e-5),
     ("cpdi", "axis_aligned", 9): (1 / 128, 1.066e-5),

@@ -30,7 +30,7 @@ JUDGED_PPC = (4, 9)
 LARGE = ("swirl", "expanding_ring", "generalised_vortex")  # solutions of large deformation, with shear and rotation
 SMALL = 1e-5  # amplitude over size
 STALL = 1.8  # the lower end of the band around order 2
-MEASURED = "measured, see ARCHITECTURE.md"
+MEASURED = "measured, see docs/methods.md"
 
 
 @dataclass(frozen=True)
