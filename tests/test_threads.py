@@ -19,7 +19,7 @@ from mpm_verify.solver.failure import RunFailed
 from mpm_verify.solver.layout import rectangle
 from mpm_verify.solver.material.neo_hookean import NeoHookean
 from mpm_verify.solver.plugins import SOLUTIONS, available, create, load
-from mpm_verify.solver.slabs import WIDTH, Slabs
+from mpm_verify.solver.slabs import SLAB_COLUMNS, Slabs
 from mpm_verify.solver.state import Grid, Particles
 from mpm_verify.solver.step import Model, Scheme, advance, particles_to_grid
 
@@ -64,7 +64,7 @@ def test_order_of_presentation(name: str, monkeypatch: pytest.MonkeyPatch) -> No
     order = np.random.default_rng(1).permutation(len(plain))
     shuffled = fly(channel(name, order=order), 140).particles
     assert np.ptp(plain.x[:, 0]) < 12
-    assert plain.x[:, 0].min() > 5 * WIDTH
+    assert plain.x[:, 0].min() > 5 * SLAB_COLUMNS
     for array in ARRAYS:
         a, b = plain.in_initial_order(array)[order], shuffled.in_initial_order(array)
         np.testing.assert_allclose(b, a, atol=1e-10 * np.abs(a).max(initial=1.0), rtol=0)
@@ -80,7 +80,7 @@ def test_order_of_presentation_with_every_transfer(transfer: str, stress: str) -
         np.random.default_rng(1).permutation(144),
     )
     plain, shuffled = (fly(channel("cpdi", order=o, scheme=scheme), 140).particles for o in (None, order))
-    assert plain.x[:, 0].min() > 5 * WIDTH
+    assert plain.x[:, 0].min() > 5 * SLAB_COLUMNS
     for array in (*ARRAYS, "affine_velocity"):
         a, b = plain.in_initial_order(array)[order], shuffled.in_initial_order(array)
         np.testing.assert_allclose(b, a, atol=1e-10 * np.abs(a).max(initial=1.0), rtol=0)
@@ -120,7 +120,7 @@ def test_sorting_keeps_the_order_within_a_slab() -> None:
     slabs.sort(grid, p)
     for s in range(len(slabs.start) - 1):
         rows = slice(slabs.start[s], slabs.start[s + 1])
-        assert (np.floor(p.x[rows, 0] + 2) // WIDTH == s).all()
+        assert (np.floor(p.x[rows, 0] + 2) // SLAB_COLUMNS == s).all()
         assert (np.diff(p.id[rows]) > 0).all()
 
 
@@ -134,7 +134,7 @@ def test_wide_domains_widen_the_slabs(half: float) -> None:
     p.v[:] = np.random.default_rng(5).standard_normal(p.v.shape)
     order, before = np.argsort(p.id), p.v[np.argsort(p.id)].copy()
     particles_to_grid(m)
-    assert (m.slabs.slab_columns > WIDTH) == (half > 3)
+    assert (m.slabs.slab_columns > SLAB_COLUMNS) == (half > 3)
     g, nodes = m.grid, m.grid.nodes
     assert g.mass.sum() == pytest.approx(p.m.sum(), rel=1e-13)
     np.testing.assert_allclose(g.momentum.sum(axis=0), p.m @ p.v, atol=1e-12)
@@ -228,7 +228,7 @@ def test_jobs_and_threads_give_the_same_results(tmp_path: Path) -> None:
     for jobs in (1, 2):
         store = Store(tmp_path / str(jobs))
         store.create(study)
-        with process_pool(jobs) as (pool, _):
+        with process_pool(jobs, "mms") as (pool, _):
             found.append(run_study(study, store, pool, threads=jobs))
         arrays = {run.digest: store.arrays(run.digest) for run in runs}
         found[-1] = {
