@@ -232,7 +232,7 @@ def test_a_file_cannot_end_a_worker(tmp_path: Path, end: str) -> None:
     study = build(asked, "verify mms", "mms")
     store = Store(tmp_path / "study")
     store.create(study)
-    with pytest.raises(RunnerError, match=r"^what computes cpdi 8² cells") as told, process_pool(1) as (pool, _):
+    with pytest.raises(RunnerError, match=r"^what computes cpdi 8² cells") as told, process_pool(1, "mms") as (pool, _):
         run_study(study, store, pool, 1)
     assert not told.value.defect
     assert not list(store.runs.iterdir())

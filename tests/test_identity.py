@@ -310,7 +310,7 @@ def study_of(solution: str, folder: Path) -> tuple[Store, Callable[[], dict[str,
     store.create(study)
 
     def run() -> dict[str, Any]:
-        with process_pool(1) as (pool, _):
+        with process_pool(1, "mms") as (pool, _):
             return run_study(study, store, pool, 1)
 
     return store, run

@@ -14,7 +14,7 @@ import pytest
 from mpm_verify.cases.harness.runner import RunnerError, Ticker, cost, pending, process_pool, run_study
 from mpm_verify.cases.harness.store import Arrays, Store, StoreError
 from mpm_verify.cases.harness.study import Study
-from mpm_verify.cases.mms import case as mms
+from mpm_verify.cases.mms import execute as mms
 from mpm_verify.cases.mms.run import Result, Run
 
 
@@ -140,7 +140,7 @@ def tick_once(digest: str) -> None:
 
 
 def test_workers_tell_their_news() -> None:
-    with process_pool(1) as (pool, heard):
+    with process_pool(1, "mms") as (pool, heard):
         assert heard() == []
         pool.submit(tick_once, "name").result()
         assert heard() == [("name", 0.5)]
@@ -170,7 +170,7 @@ def test_two_processes_give_the_numbers_of_one(tmp_path: Path) -> None:
     alone = opened(tmp_path / "alone", study)
     here = run_study(study, alone, Serial(), 1)
     shared = opened(tmp_path / "shared", study)
-    with process_pool(2) as (pool, _):
+    with process_pool(2, "mms") as (pool, _):
         there = run_study(study, shared, pool, 1)
     assert here.keys() == there.keys() == {run.digest for run in study.runs}
     assert any(result.status == "failed" for result in here.values())  # classical MPM with 1 per cell
@@ -201,7 +201,7 @@ def arm(deadly: int) -> None:
 def test_dying_worker(tmp_path: Path) -> None:
     study = small(ppc=(1,))
     store = opened(tmp_path, study)
-    with process_pool(1) as (pool, _):
+    with process_pool(1, "mms") as (pool, _):
         pool.submit(arm, 16).result()
         with pytest.raises(RunnerError, match=r"a worker process died.*try --jobs 1; stored runs are kept") as told:
             run_study(study, store, pool, 1)

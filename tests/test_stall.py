@@ -14,7 +14,7 @@ from mpm_verify.cases.harness.verdicts import doublings, findings
 from mpm_verify.cases.judging.order import Expectation
 from mpm_verify.cases.judging.records import Ended
 from mpm_verify.cases.judging.stall import Cause, CauseCode, Finding, Measured, Peer, Stall, explain
-from mpm_verify.cases.mms import case as mms
+from mpm_verify.cases.mms import execute as mms
 from mpm_verify.cases.mms.run import Result, Run
 from mpm_verify.reports import words
 from mpm_verify.reports.components import stalls as told

@@ -228,7 +228,7 @@ def test_jobs_and_threads_give_the_same_results(tmp_path: Path) -> None:
     for jobs in (1, 2):
         store = Store(tmp_path / str(jobs))
         store.create(study)
-        with process_pool(jobs) as (pool, _):
+        with process_pool(jobs, "mms") as (pool, _):
             found.append(run_study(study, store, pool, threads=jobs))
         arrays = {run.digest: store.arrays(run.digest) for run in runs}
         found[-1] = {
