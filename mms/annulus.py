@@ -1,4 +1,4 @@
-"""What the solutions on a ring around the origin have in common: the body, the reference speed and the clearance."""
+"""Base of the solutions on a ring around the origin: the body, the reference speed and the clearance."""
 
 from dataclasses import dataclass
 from typing import ClassVar
@@ -11,9 +11,19 @@ from mpm_verify.solver.state import Floats
 
 @dataclass(frozen=True)
 class Annulus:
-    """0 < inner < outer: radii of the body; C above zero: reference speed, dt = courant dx / C (ValueError otherwise).
+    """Body of a solution on a ring; both edges are free, and the displacement must leave them without traction.
 
-    Both edges are free: no wall, and a displacement of a subclass must leave them without traction.
+    Parameters
+    ----------
+    inner, outer
+        Radii of the body, 0 < inner < outer.
+    C
+        Reference speed, above zero: dt = courant dx / C.
+
+    Raises
+    ------
+    ValueError
+        For other radii or speeds.
     """
 
     inner: float = 0.75
@@ -44,12 +54,12 @@ class Annulus:
 
     @property
     def margin(self) -> float:
-        """How much wider than the box the grid is: two cells where eight lie across the body.
+        """Distance by which the grid is wider than the box: two cells where eight cover the body.
 
         Domains beside a free edge are parallelograms, and in strong shear their corners reach beyond the edge.
         """
         return 0.5 * self.outer
 
     def layout(self, dx: float, ppc: int, offset: Offset = CENTRED) -> Layout:
-        """Rings of domains, spaced as `ppc` in a cell of side dx; the same for every `offset`, which moves the grid."""
+        """Layout of rings, spaced as `ppc` in a cell of side dx; the same for every `offset`, which moves the grid."""
         return annulus(self.inner, self.outer, dx, ppc)

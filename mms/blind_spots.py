@@ -11,25 +11,25 @@ from enum import StrEnum
 
 Numbers = dict[str, float]
 FAINT = 0.01  # fraction below which a term is not seen beside the others
-WEAK = 0.05  # of the force or the acceleration that matters most
+WEAK = 0.05  # fraction of the force or the acceleration that matters most
 SMALL = 1e-3  # strain below which second order in the strain is not seen in the error of a usual grid
 TURNED, CLEAR = 1.0, 15.0  # degrees: below the first nothing is seen, from the second on it is not weak
-ROUND = 1e-9  # of the largest value: above round-off
+ROUND = 1e-9  # fraction of the largest value: above round-off
 FINEST = 128  # cells of the finest usual grid
 QUARTER = 0.25  # cells: of 4 particles in a cell, each is a quarter of a cell from its face
 
 
 class SpotCode(StrEnum):
-    """What a study of a solution may be blind to."""
+    """Codes of what a study of a solution may be blind to."""
 
     SHEAR = "shear"  # off-diagonal components of F
     ROTATION = "rotation"  # R of F = R U; F is its own transpose where R = I
-    ORDER = "order"  # of the factors in the update of F
+    ORDER = "order"  # order of the factors in the update of F
     SPIN = "spin"  # skew part of the velocity gradient L
     VOLUME = "volume"  # det F
     GRADIENT = "gradient"  # change of F over the body
     START = "start"  # acceleration at t = 0: what the half-step start corrects
-    VELOCITY = "velocity"  # at t = 0
+    VELOCITY = "velocity"  # velocity at t = 0
     MIRROR = "mirror"  # whether u_x(X, Y) = u_y(Y, X)
     AMPLITUDE = "amplitude"  # strain and stress
     CROSSING = "crossing"  # displacement in cells
@@ -37,7 +37,7 @@ class SpotCode(StrEnum):
     LOAD = "load"  # body force against inertia
     STRESS = "stress"  # divergence of the stress against body force and inertia
     PLANE = "plane"  # one-dimensional motion
-    ORDERS = "orders"  # what an order does not show, of any solution
+    ORDERS = "orders"  # what an observed order does not show, of any solution
     CONSTANTS = "constants"  # what leaves the order as it is, of any solution
 
 
@@ -51,7 +51,7 @@ class BlindSpot:
 
 
 ALWAYS = (BlindSpot(SpotCode.ORDERS, True), BlindSpot(SpotCode.CONSTANTS, True))
-SEEN_BY = {  # solutions of the library that do see it
+SEEN_BY = {  # solutions of the library that see what others are blind to
     SpotCode.SHEAR: ("clamped_shear", "generalised_vortex", "swirl"),
     SpotCode.ROTATION: ("clamped_shear", "generalised_vortex", "swirl"),
     SpotCode.ORDER: ("clamped_shear", "generalised_vortex", "swirl"),
@@ -106,7 +106,7 @@ RULES: dict[SpotCode, tuple[Callable[[Numbers], bool], tuple[str, ...]]] = {  # 
 
 
 def judge(measured: Numbers) -> tuple[BlindSpot, ...]:
-    """A BlindSpot a rule, in the order of the rules, and what holds for every solution last."""
+    """One BlindSpot for each rule, in the order of the rules, and what holds for every solution last."""
     known = {**measured, "finest": float(FINEST)}
     rules = (
         BlindSpot(code, blind(known), {name: known[name] for name in names}) for code, (blind, names) in RULES.items()

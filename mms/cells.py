@@ -1,13 +1,13 @@
-"""Cells that fill a rectangle: square, counted along x, and a whole number of them along y."""
+"""Cells that fill a rectangle: square, counted on its width, and a whole number of them on its height."""
 
 from fractions import Fraction
 from itertools import pairwise
 from math import ceil, floor, log
 from typing import Any
 
-MOST = 64  # of the parts that the width may be cut into
-ROWS = 2  # of cells, at the least
-COARSER, FINER = 0.85, 4  # times the usual cells: with more a study takes another sort of time
+MOST = 64  # parts that the width may be cut into
+ROWS = 2  # rows of cells, at the least
+COARSER, FINER = 0.85, 4  # factors to the usual cells: with more a study takes another sort of time
 
 
 def ratio(solution: Any) -> Fraction | None:
@@ -18,7 +18,7 @@ def ratio(solution: Any) -> Fraction | None:
 
 
 def fitting(solution: Any, usual: tuple[int, ...]) -> tuple[int, ...]:
-    """As many levels that fill the body, near the `usual` ones and refined as they are; these where they fit.
+    """Numbers of cells that fill the body, near the `usual` ones and refined as they are; these where they fit.
 
     The usual counts are scaled, and rounded to what fits; a scale counts by how unevenly that refines, and by how much
     finer or coarser it ends. Where none will do, the levels are the first multiples of what fits.
@@ -38,17 +38,17 @@ def fitting(solution: Any, usual: tuple[int, ...]) -> tuple[int, ...]:
 
 
 def fits(count: int, sides: Fraction) -> bool:
-    """Whether so many cells along x fill the height."""
+    """Whether so many cells on the width fill the height, where `sides` is height over width."""
     return (count * sides).denominator == 1
 
 
 def nearest(count: float, unit: int) -> int:
-    """The multiple of `unit` nearest to a count, at least one."""
+    """Multiple of `unit` nearest to a count, at least one."""
     return max(1, floor(count / unit + 0.5)) * unit
 
 
 def uneven(cells: tuple[int, ...], usual: tuple[int, ...]) -> float:
-    """How far the most different refinement is from the usual one, as a difference of logarithms."""
+    """Distance of the most different refinement from the usual one, as a difference of logarithms."""
     steps = zip(pairwise(cells), pairwise(usual), strict=True)
     return max((abs(log(b * p / (a * q))) for (a, b), (p, q) in steps), default=0.0)
 

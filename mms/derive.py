@@ -1,4 +1,4 @@
-"""From a displacement and an energy to stress and body force, by SymPy and the chain rule.
+"""Derivation of stress and body force from a displacement and an energy, by SymPy and the chain rule.
 
     F = I + du/dX,  P = dW/dF,  sigma = P F^T / det F,  b = d2u/dt2 - Div P / rho0,
     Div P_i = sum over J, k, L of d2W/dF_iJ dF_kL * d2u_k/dX_L dX_J
@@ -22,7 +22,7 @@ class Solution(Protocol):
     """A displacement field as a plug-in of mms/solutions; the problem statement is its docstring."""
 
     def displacement(self, X: Sequence[sp.Symbol], t: sp.Symbol) -> sp.Matrix:
-        """u of the reference place X = (X, Y) and the time t."""
+        """Displacement u (2,) of the reference position X = (X, Y) and the time t."""
 
 
 @dataclass(frozen=True)
@@ -44,14 +44,31 @@ class Fields:
     inner: dict[sp.Symbol, sp.Expr]
 
     def full(self, expressions: Expressions) -> Expressions:
-        """The expressions in X, Y and t alone."""
+        """Write expressions in X, Y and t alone."""
         return [sp.sympify(e).xreplace(self.inner) for e in expressions]
 
 
 def derive(solution: Solution, material: Energy, rho0: float) -> Fields:
-    """All fields of `solution` in a body of `material` with initial density `rho0`.
+    """Derive all fields of a solution.
 
-    Raises ValueError for a material without an energy.
+    Parameters
+    ----------
+    solution
+        Displacement as an expression.
+    material
+        Constitutive model with an energy.
+    rho0
+        Density at reference.
+
+    Returns
+    -------
+    Fields
+        Expressions in X, Y and t.
+
+    Raises
+    ------
+    ValueError
+        For a material without an energy.
     """
     check_energy(material)
     X, t = sp.symbols("X Y", real=True), sp.Symbol("t", real=True)
@@ -82,7 +99,7 @@ def derive(solution: Solution, material: Energy, rho0: float) -> Fields:
 
 
 def inner_symbol(inner: dict[sp.Symbol, sp.Expr], expression: sp.Expr, name: str) -> sp.Symbol:
-    """The symbol that stands for `expression`, new or known by its name."""
+    """Symbol that stands for `expression`, new or known by its name."""
     symbol = sp.Symbol(name, real=True)
     inner[symbol] = expression
     return symbol

@@ -1,4 +1,4 @@
-"""Which boundary a solver can impose on the four sides of a rectangle, found from the manufactured fields.
+"""Boundary that a solver can impose on the four sides of a rectangle, found from the manufactured fields.
 
 fixed    u = 0
 roller   u . n = 0, and no shear traction
@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 
 from mpm_verify.mms.manufacture import Manufactured
-from mpm_verify.mms.measure import CELLS, TIMES, Law, Sampler, largest, least_stress
+from mpm_verify.mms.measure import CELLS, TIMES, Sampler, WaveMaterial, largest, least_stress
 from mpm_verify.solver.state import Floats
 
 SIDES = ("left", "right", "bottom", "top")  # side // 2 is the axis of the normal, side % 2 lower or upper
-PLACES = 65  # along a side
-ROUND = 1e-9  # of the largest displacement or stress: above round-off, below what could be meant
-ROUNDED = 5e-3  # of the same: 3.14 for pi misses by less
+POINTS = 65  # sampled on a side
+ROUND = 1e-9  # fraction of the largest displacement or stress: above round-off, below what could be meant
+ROUNDED = 5e-3  # fraction of the same: 3.14 for pi misses by less
 NEEDS = {
     "fixed": ("normal displacement", "tangential displacement"),
     "roller": ("normal displacement", "tangential traction"),
@@ -27,7 +27,7 @@ NEEDS = {
 
 @dataclass(frozen=True)
 class Peak:
-    """The largest size of a quantity on a side, with its place and time."""
+    """Largest size of a quantity on a side, with its reference position and time."""
 
     value: float
     X: Floats
@@ -50,7 +50,7 @@ class Side:
 
 @dataclass(frozen=True)
 class Edges:
-    """The four sides; `reach` is the largest displacement in the body, `motion` the largest component of one.
+    """Four sides of a body; `reach` is its largest displacement, `motion` the largest component of one.
 
     `move` and `stress` are sizes below which a displacement and a traction are round-off.
     """
@@ -63,11 +63,11 @@ class Edges:
 
     @property
     def kinds(self) -> tuple[str, ...]:
-        """The first that holds, one a side; "" where it is nothing that the solver has."""
+        """First kind that holds, one a side; "" where it is nothing that the solver has."""
         return tuple((*self.possible(side), "")[0] for side in self.sides)
 
     def misses(self, side: Side) -> dict[str, tuple[float, Peak]]:
-        """Each displacement and traction of the side as a fraction of the body's largest, and its peak."""
+        """Displacements and tractions of the side as fractions of the body's largest, with their peaks."""
         motion, stress = self.motion or 1.0, self.stress / ROUND
         return {
             "normal displacement": (side.normal.value / motion, side.normal),
@@ -77,11 +77,11 @@ class Edges:
         }
 
     def miss(self, side: Side, kind: str) -> tuple[float, str]:
-        """By how much the side is not of the kind, as a fraction of the body's largest, and in what."""
+        """Fraction of the body's largest by which the side is not of the kind, and in what."""
         return max((self.misses(side)[need][0], need) for need in NEEDS[kind])
 
     def possible(self, side: Side) -> tuple[str, ...]:
-        """What holds on the side; fixed before roller before free."""
+        """Kinds that hold on the side; fixed before roller before free."""
         still, no_shear = side.normal.value <= self.move, side.tangential_traction.value <= self.stress
         holds = {
             "fixed": still and side.tangential.value <= self.move,
@@ -91,13 +91,13 @@ class Edges:
         return tuple(kind for kind, true in holds.items() if true)
 
     def wrong(self, kinds: tuple[str, ...]) -> str:
-        """One sentence on the first side that cannot be of the kind it is meant to be; empty where all can."""
+        """Line on the first side that cannot be of the kind it is meant to be; empty where all can."""
         for side, kind in zip(self.sides, kinds, strict=True):
             if kind not in self.possible(side):
-                return self.refusal(side, kind)
+                return self.line(side, kind)
         return ""
 
-    def refusal(self, side: Side, kind: str) -> str:
+    def line(self, side: Side, kind: str) -> str:
         """How far the side is from the kind it is meant to be, or "" from any, what that looks like, what to write."""
         meant = kind or min(NEEDS, key=lambda kind: self.miss(side, kind)[0])
         fraction, quantity = self.miss(side, meant)
@@ -121,30 +121,30 @@ class Edges:
         )
 
     def told(self, side: Side, quantity: str) -> str:
-        """The quantity with its peak, and as a fraction."""
+        """Text of a quantity with its peak, and as a fraction."""
         fraction, peak = self.misses(side)[quantity]
         of = "motion" if "displacement" in quantity else "stress"
         return f"{quantity} is {peak}, {fraction:.1g} of the largest {of}"
 
 
-def examine(solution: Any, exact: Manufactured, law: Law) -> Edges:
-    """Displacements and tractions on the four sides of the body over the duration."""
+def examine(solution: Any, exact: Manufactured, material: WaveMaterial) -> Edges:
+    """Find displacements and tractions on the four sides of the body over the duration."""
     sampler, times = Sampler(exact), np.linspace(0.0, solution.duration, TIMES)
     body = sampler(solution.layout(float(solution.upper[0] - solution.lower[0]) / CELLS, 4).X, times)
     reach, sides = float(np.hypot(body.u[..., 0], body.u[..., 1]).max()), []
     for number, name in enumerate(SIDES):
         axis, corner = number // 2, (solution.lower, solution.upper)[number % 2]
-        X = np.linspace(solution.lower, solution.upper, PLACES)
+        X = np.linspace(solution.lower, solution.upper, POINTS)
         X[:, axis] = corner[axis]
         s = sampler(X, times)
         reach = max(reach, float(np.hypot(s.u[..., 0], s.u[..., 1]).max()))
         quantities = (s.u[..., axis], s.u[..., 1 - axis], s.P[..., axis, axis], s.P[..., 1 - axis, axis])
         sides.append(Side(name, *(peak(values, X, times) for values in quantities)))
     motion = max(largest(body.u), *(peak.value for side in sides for peak in (side.normal, side.tangential)))
-    return Edges(tuple(sides), reach, motion, ROUND * reach, ROUND * max(largest(body.P), least_stress(law)))
+    return Edges(tuple(sides), reach, motion, ROUND * reach, ROUND * max(largest(body.P), least_stress(material)))
 
 
 def peak(values: Floats, X: Floats, times: Floats) -> Peak:
-    """The largest size of `values` (T,P)."""
+    """Largest size of `values` (T,P)."""
     k, p = np.unravel_index(int(np.abs(values).argmax()), values.shape)
     return Peak(float(abs(values[k, p])), X[p], float(times[k]))

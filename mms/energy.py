@@ -1,4 +1,4 @@
-"""What a law must offer so that a solution can be manufactured for it; imports nothing heavy."""
+"""Energy that a material must have so that a solution can be manufactured for it; imports nothing heavy."""
 
 from typing import Any, Protocol
 
@@ -6,14 +6,14 @@ from mpm_verify.solver.plugins import MATERIALS, available, load
 
 
 class Energy(Protocol):
-    """A law that derives from a stored energy."""
+    """Constitutive model that derives from a stored energy."""
 
     def energy(self, F: Any, log: Any) -> Any:
         """Stored energy per initial volume of a 3 x 3 deformation gradient."""
 
 
 def check_energy(material: Any) -> None:
-    """Raise ValueError for a law without an energy, such as those in rate form; it names the laws that have one."""
+    """Raise ValueError for a material without an energy, such as those in rate form; it names those that have one."""
     if material.energy is not None:
         return
     others = ", ".join(name for name in available(MATERIALS) if load(MATERIALS, name).energy is not None)

@@ -1,4 +1,4 @@
-"""The exact fields as a kernel: one call gives u, v, F, sigma and b for a block of particles.
+"""Exact fields as a kernel: one call gives u, v, F, sigma and b for a block of particles.
 
 Written out as Python source from the hoisted expressions, and compiled by the same kernel() as the solver. The source
 file stands in the kernel cache, with what it is compiled to, named by its content.
@@ -25,7 +25,7 @@ from mpm_verify.solver.state import Floats
 EXACT = nothing(F1, F1, i8, F1)  # columns[C*b + c], scalars[s], particles in the block, out[row*BLOCK + b]
 Exact = function_type(EXACT)
 ROWS = {"u": (0, 1), "v": (2, 3), "F": (4, 5, 6, 7), "sigma": (8, 9, 10, 11), "b": (12, 13)}  # of `out`
-EXACT_WHOLE = 2**53  # whole numbers beyond are no integers that Numba can type
+EXACT_WHOLE = 2**53  # beyond, whole numbers are not integers that Numba can type
 ROOM = 16  # rows of `out`, two of them scratch for logarithms
 
 HEADER = '''"""Generated from a manufactured solution; not for editing."""
@@ -41,7 +41,7 @@ def exact(c, s, n, out):
 
 @dataclass(frozen=True)
 class ExactKernel:
-    """`fill` has the signature EXACT; columns(X) (P,C) and scalars(t, t_velocity) (S,) are what it takes."""
+    """Kernel of signature EXACT, and what it takes: columns(X) (P,C) and scalars(t, t_velocity) (S,)."""
 
     fill: Callable[..., None]
     columns: Callable[[Floats], Floats]
@@ -49,7 +49,7 @@ class ExactKernel:
 
 
 def compile_exact(fields: Fields) -> ExactKernel:
-    """Hoist, find common subexpressions, print, compile."""
+    """Make a kernel of the fields: hoist, find common subexpressions, print, compile."""
     tv = sp.Symbol("t_velocity", real=True)
     hoist = Hoist(fields.X, (fields.t, tv))
     inner = {symbol: hoist(e) for symbol, e in fields.inner.items()}
@@ -74,7 +74,7 @@ def compile_exact(fields: Fields) -> ExactKernel:
 
 
 class Printer(PythonCodePrinter):
-    """Python with small whole powers as products: Numba makes a loop of x**(-2), and a vectoriser passes loops by."""
+    """Printer of small whole powers as products: Numba makes a loop of x**(-2), and a vectoriser passes loops by."""
 
     def _print_Pow(self, expr: sp.Pow, rational: bool = False) -> str:
         base, exponent = expr.as_base_exp()
@@ -85,7 +85,7 @@ class Printer(PythonCodePrinter):
 
 
 def whole_numbers(expression: sp.Expr) -> sp.Expr:
-    """J**(-2.0) as J**(-2): with a whole exponent it is two products, with another a call of pow()."""
+    """Write J**(-2.0) as J**(-2): with a whole exponent it is two products, with another a call of pow()."""
     return sp.sympify(expression).replace(
         lambda e: e.is_Float and abs(e) < EXACT_WHOLE and float(e).is_integer(), lambda e: sp.Integer(int(e))
     )

@@ -18,51 +18,53 @@ Field = Callable[[Floats, float], Floats]
 
 @dataclass(frozen=True)
 class Manufactured:
-    """Exact fields as functions of (X, t): X (P,2), t a number.
+    """Exact fields as functions of (X, t): reference positions X (P,2), t a number.
 
-    u, x, v, b give (P,2); F and P (P,2,2), rows the components of the deformed place; sigma (P,4) in the order xx, yy,
-    zz, xy; b is the body force per mass.
+    Parameters
+    ----------
+    fields
+        Expressions that the functions are made from.
     """
 
     fields: Fields
 
     def x(self, X: Floats, t: float) -> Floats:
-        """Place."""
+        """Position x (P,2), a length."""
         return X + self.u(X, t)
 
     @cached_property
     def u(self) -> Field:
-        """Displacement."""
+        """Displacement u (P,2), a length."""
         return self._function(self.fields.u, (2,))
 
     @cached_property
     def v(self) -> Field:
-        """Velocity."""
+        """Velocity v (P,2), length per time."""
         return self._function(self.fields.v, (2,))
 
     @cached_property
     def F(self) -> Field:
-        """Deformation gradient."""
+        """Deformation gradient F (P,2,2), rows the components of the position."""
         return self._function(self.fields.F, (2, 2))
 
     @cached_property
     def P(self) -> Field:
-        """First Piola stress."""
+        """First Piola stress P (P,2,2), rows the components of the traction."""
         return self._function(self.fields.P, (2, 2))
 
     @cached_property
     def sigma(self) -> Field:
-        """Cauchy stress."""
+        """Cauchy stress sigma (P,4): xx, yy, zz, xy, tension positive."""
         return self._function(self.fields.sigma, (4,))
 
     @cached_property
     def b(self) -> Field:
-        """Body force per mass."""
+        """Body force per mass b (P,2), length per time squared."""
         return self._function(self.fields.b, (2,))
 
     @cached_property
     def kernel(self) -> ExactKernel:
-        """The same fields as one compiled kernel for blocks of particles."""
+        """Fields as one compiled kernel for blocks of particles."""
         return compile_exact(self.fields)
 
     def _function(self, expressions: Expressions, shape: tuple[int, ...]) -> Field:
@@ -76,8 +78,27 @@ class Manufactured:
 
 
 def manufacture(solution: Solution, material: Energy, rho0: float) -> Manufactured:
-    """Exact x, v, F, sigma, P and b for a displacement field in a body of `material` with initial density rho0.
+    """Make exact fields, and the body force that they need, from a displacement.
 
     The source term comes from the material's energy by differentiation, never from the stress the solver computes.
+
+    Parameters
+    ----------
+    solution
+        Displacement as an expression, such as a plug-in of mms/solutions.
+    material
+        Constitutive model with an energy.
+    rho0
+        Density at reference, in the units of the material.
+
+    Returns
+    -------
+    Manufactured
+        x, u, v, F, P, sigma and b as functions of (X, t).
+
+    Raises
+    ------
+    ValueError
+        For a material without an energy; it names those that have one.
     """
     return Manufactured(derive(solution, material, rho0))

@@ -1,4 +1,4 @@
-"""What a manufactured solution holds, in numbers: sampled over its body, its boundary and its duration.
+"""Numbers of a manufactured solution, sampled over its body, its boundary and its duration.
 
 Nothing is read from names. The symbols that the fields are written in are evaluated first and P, sigma and b from
 their values, so no expression is put into another and all of it takes a tenth of a second.
@@ -15,22 +15,22 @@ from mpm_verify.solver.layout import Layout, shared_corners
 from mpm_verify.solver.state import Floats
 
 TIMES = 33  # even steps hit the extremes of a wave whose period divides the duration
-CELLS = 16  # across the body, four places in each
+CELLS = 16  # on the width of the body, four positions in each
 SHARP = 0.8  # cosine of half the angle between two faces: at the corners of a rectangle there is no one normal
 
 
-class Law(Protocol):
-    """What is needed of the material."""
+class WaveMaterial(Protocol):
+    """Constitutive model with what measures a stress: a density and a wave speed."""
 
     rho0: float
 
     def wave_speed(self) -> float:
-        """Compression wave in the undeformed state."""
+        """Speed of the compression wave in the undeformed state."""
 
 
 @dataclass(frozen=True)
 class Sample:
-    """Fields at T times and P places: u, v, acceleration, b (T,P,2); F, P (T,P,2,2); sigma (T,P,4).
+    """Fields at T times and P reference positions: u, v, acceleration, b (T,P,2); F, P (T,P,2,2); sigma (T,P,4).
 
     `slope` (T,P,8) are the derivatives of F by X and Y.
     """
@@ -46,23 +46,23 @@ class Sample:
 
     @property
     def J(self) -> Floats:
-        """det F (T,P)."""
+        """Determinant of F, (T,P)."""
         J: Floats = self.F[..., 0, 0] * self.F[..., 1, 1] - self.F[..., 0, 1] * self.F[..., 1, 0]
         return J
 
 
 class Sampler:
-    """Samples the fields of one manufactured solution; compiled once."""
+    """Sampler of the fields of one manufactured solution; compiled once."""
 
     def __init__(self, exact: Manufactured) -> None:
         f = exact.fields
-        place, inner = (*f.X, f.t), list(f.inner)
-        self.F: Any = sp.lambdify(place, f.F, "numpy", cse=True)
-        self.first: Any = sp.lambdify(place, [*f.u, *f.v, *f.inner.values()], "numpy", cse=True)
+        X_t, inner = (*f.X, f.t), list(f.inner)
+        self.F: Any = sp.lambdify(X_t, f.F, "numpy", cse=True)
+        self.first: Any = sp.lambdify(X_t, [*f.u, *f.v, *f.inner.values()], "numpy", cse=True)
         self.last: Any = sp.lambdify(inner, [*f.P, *f.sigma, *f.b], "numpy", cse=True)
 
     def __call__(self, X: Floats, times: Floats) -> Sample:
-        """Fields at all places (P,2) at all times (T,); what has no value there is NaN or infinite."""
+        """Fields at all reference positions (P,2) at all times (T,); what has no value there is NaN or infinite."""
         shape = (len(times), len(X))
         with np.errstate(all="ignore"):
             first = filled(self.first(X[:, 0], X[:, 1], times[:, None]), shape)
@@ -72,7 +72,7 @@ class Sampler:
         return Sample(u, v, F.reshape(*shape, 2, 2), slope, acceleration, P.reshape(*shape, 2, 2), sigma, b)
 
     def rate(self, X: Floats, times: Floats) -> Floats:
-        """dF/dt (T,P,2,2) by a central difference, to 1e-6: its expressions would double what there is to compile."""
+        """Rate dF/dt (T,P,2,2) by a central difference, to 1e-6: expressions would double what there is to compile."""
         h = 1e-4 * float(np.ptp(times))
         shape = (len(times), len(X))
         ahead, behind = (filled(self.F(X[:, 0], X[:, 1], times[:, None] + s), shape) for s in (h, -h))
@@ -81,7 +81,7 @@ class Sampler:
 
 
 def filled(values: Any, shape: tuple[int, ...]) -> Floats:
-    """Numbers and arrays as one array (*shape, n)."""
+    """Stack numbers and arrays as one array (*shape, n)."""
     return np.stack([np.broadcast_to(np.asarray(value, dtype=float), shape) for value in values], axis=-1)
 
 
@@ -90,12 +90,12 @@ def boundary(layout: Layout) -> tuple[Floats, Floats]:
 
     A face of one domain alone is on the edge. The normal at a corner is the mean of those of its two faces.
     """
-    places, start = shared_corners(layout)
+    X, start = shared_corners(layout)
     faces = np.stack([start, np.roll(start, -1, axis=1)], axis=-1).reshape(-1, 2)
     _, which, times = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
-    faces, X = faces[which[times == 1]], places
-    along = X[faces[:, 1]] - X[faces[:, 0]]
-    normal = np.stack([along[:, 1], -along[:, 0]], axis=-1) / np.hypot(*along.T)[:, None]
+    faces = faces[which[times == 1]]
+    tangent = X[faces[:, 1]] - X[faces[:, 0]]
+    normal = np.stack([tangent[:, 1], -tangent[:, 0]], axis=-1) / np.hypot(*tangent.T)[:, None]
     total = np.zeros(X.shape)
     np.add.at(total, faces.ravel(), np.repeat(normal, 2, axis=0))
     length = np.hypot(*total.T)
@@ -103,8 +103,8 @@ def boundary(layout: Layout) -> tuple[Floats, Floats]:
     return X[smooth], total[smooth] / length[smooth, None]
 
 
-def measure(exact: Manufactured, solution: Any, law: Law) -> dict[str, float]:
-    """Numbers without units, see the lines below; lengths are relative to the body's extent in x, as cells are."""
+def measure(exact: Manufactured, solution: Any, material: WaveMaterial) -> dict[str, float]:
+    """Measure a solution: numbers without units, lengths relative to the body's extent in x, as cells are."""
     extent = solution.upper - solution.lower
     width, times = float(extent[0]), np.linspace(0.0, solution.duration, TIMES)
     layout, sampler = solution.layout(width / CELLS, 4), Sampler(exact)
@@ -113,44 +113,44 @@ def measure(exact: Manufactured, solution: Any, law: Law) -> dict[str, float]:
     turned = np.arctan2(s.F[..., 1, 0] - s.F[..., 0, 1], s.F[..., 0, 0] + s.F[..., 1, 1])
     inertia, load = largest(s.acceleration), largest(s.b)
     numbers = {
-        "strain": largest(shift),  # of a component of F - I
+        "strain": largest(shift),  # largest component of F - I
         "shear": max(largest(s.F[..., 0, 1]), largest(s.F[..., 1, 0])),
-        "rotation_deg": float(np.degrees(np.abs(turned).max())),  # of R in F = R U
-        "spin": share(largest(L - L.swapaxes(-1, -2)), largest(L)),  # of the velocity gradient
-        "order": share(largest(s.F @ L - L @ s.F), largest(L)),  # whether F and L commute
+        "rotation_deg": float(np.degrees(np.abs(turned).max())),  # angle of R in F = R U
+        "spin": ratio(largest(L - L.swapaxes(-1, -2)), largest(L)),  # skew part of the velocity gradient
+        "order": ratio(largest(s.F @ L - L @ s.F), largest(L)),  # whether F and L commute
         "J_min": float(s.J.min()),
         "J_max": float(s.J.max()),
         "gradient": width * largest(s.slope),
         "displacement": largest(s.u) / width,
-        "start_acceleration": share(largest(s.acceleration[0]), inertia),
-        "start_velocity": share(largest(s.v[0]), largest(s.v)),
-        "load": share(load, inertia),
-        "stress_force": share(largest(s.acceleration - s.b), max(inertia, load)),  # Div P / rho0
-        "stress": largest(s.sigma) / (law.rho0 * law.wave_speed() ** 2),
-        "weaker_component": share(min(largest(s.u[..., 0]), largest(s.u[..., 1])), largest(s.u)),
-        "weaker_direction": share(min(largest(shift[..., :, 0]), largest(shift[..., :, 1])), largest(shift)),
-        "mirror": 1.0,  # how far u is from its mirror image in the diagonal
+        "start_acceleration": ratio(largest(s.acceleration[0]), inertia),
+        "start_velocity": ratio(largest(s.v[0]), largest(s.v)),
+        "load": ratio(load, inertia),
+        "stress_force": ratio(largest(s.acceleration - s.b), max(inertia, load)),  # Div P / rho0
+        "stress": largest(s.sigma) / (material.rho0 * material.wave_speed() ** 2),
+        "weaker_component": ratio(min(largest(s.u[..., 0]), largest(s.u[..., 1])), largest(s.u)),
+        "weaker_direction": ratio(min(largest(shift[..., :, 0]), largest(shift[..., :, 1])), largest(shift)),
+        "mirror": 1.0,  # distance of u from its mirror image in the diagonal
     }
     if np.isclose(*extent):
         image = sampler(solution.lower + (layout.X - solution.lower)[:, ::-1], times).u[..., ::-1]
-        numbers["mirror"] = share(largest(image - s.u), largest(s.u))
+        numbers["mirror"] = ratio(largest(image - s.u), largest(s.u))
     free = float(solution.boundary == "free")
-    return {**numbers, **at_the_edge(s, sampler, layout, times, least_stress(law)), "edge_free": free}
+    return {**numbers, **at_the_edge(s, sampler, layout, times, least_stress(material)), "edge_free": free}
 
 
-def least_stress(law: Law) -> float:
-    """What stresses are compared with where there is none, as in rigid motion: a strain of 1e-5."""
-    return 1e-5 * law.rho0 * law.wave_speed() ** 2
+def least_stress(material: WaveMaterial) -> float:
+    """Stress of a strain of 1e-5, with which others are compared where there is none, as in rigid motion."""
+    return 1e-5 * material.rho0 * material.wave_speed() ** 2
 
 
 def at_the_edge(s: Sample, sampler: Sampler, layout: Layout, times: Floats, least: float) -> dict[str, float]:
-    """Displacement and traction on the boundary, as shares of the largest displacement and stress in the body."""
+    """Displacement and traction on the boundary, as fractions of the largest displacement and stress in the body."""
     X, normal = boundary(layout)
     edge, u, P = sampler(X, times), largest(s.u), max(largest(s.P), least)
     return {
-        "edge_motion": share(largest(edge.u), u),
-        "edge_normal_motion": share(largest((edge.u * normal).sum(axis=-1)), u),
-        "edge_traction": share(largest((edge.P * normal[:, None, :]).sum(axis=-1)), P),
+        "edge_motion": ratio(largest(edge.u), u),
+        "edge_normal_motion": ratio(largest((edge.u * normal).sum(axis=-1)), u),
+        "edge_traction": ratio(largest((edge.P * normal[:, None, :]).sum(axis=-1)), P),
     }
 
 
@@ -159,6 +159,6 @@ def largest(values: Floats) -> float:
     return float(np.abs(values).max())
 
 
-def share(part: float, whole: float) -> float:
-    """Of what is nothing, every share is zero."""
+def ratio(part: float, whole: float) -> float:
+    """Part over whole; zero where the whole is."""
     return part / whole if whole > 0 else 0.0

@@ -1,4 +1,4 @@
-"""What the solutions on a square have in common: the domain, the reference speed and the duration."""
+"""Base of the solutions on a square: the domain, the reference speed and the duration."""
 
 from dataclasses import dataclass
 from math import inf
@@ -12,7 +12,20 @@ from mpm_verify.solver.state import Floats
 
 @dataclass(frozen=True)
 class Square:
-    """Side L and reference speed C, above zero (ValueError otherwise); the study lasts 2 L / C."""
+    """Body of a solution on a square; a study lasts 2 L / C.
+
+    Parameters
+    ----------
+    L
+        Side, above zero.
+    C
+        Reference speed, above zero: dt = courant dx / C.
+
+    Raises
+    ------
+    ValueError
+        For another side or speed.
+    """
 
     L: float = 1.0
     C: float = 100.0
@@ -33,12 +46,12 @@ class Square:
         return np.full(2, self.L)
 
     def layout(self, dx: float, ppc: int, offset: Offset = CENTRED) -> Layout:
-        """Square domains, `ppc` in a cell of side dx."""
+        """Layout of square domains, `ppc` in a cell of side dx."""
         return rectangle(self.lower, self.upper, dx, ppc, offset)
 
     @property
     def margin(self) -> float:
-        """How far the body may move out of its reference square; the grid is wider by it."""
+        """Distance that the body may move out of its reference square; the grid is wider by it."""
         return 0.0
 
     @property
@@ -59,7 +72,7 @@ class Square:
 
     @staticmethod
     def exact(value: float) -> Any:
-        """Whole numbers as integers, so that SymPy keeps sin(2 pi X) and its like exact."""
+        """Make an integer of a whole number, so that SymPy keeps sin(2 pi X) and its like exact."""
         import sympy as sp
 
         return sp.Integer(int(value)) if float(value).is_integer() else sp.Float(value)

@@ -1,1 +1,1 @@
-"""Stored results -> tables, figures and one HTML page; never runs a solver."""
+"""Tables, figures and one HTML page from stored results; never runs a solver."""

@@ -10,7 +10,7 @@ from mpm_verify.reports.frames import Record
 
 @dataclass(frozen=True)
 class Change:
-    """What changed: a run or a refinement, which of its numbers or words, and both values."""
+    """Change: a run or a refinement, which of its numbers or words, and both values."""
 
     of: str
     what: str
@@ -47,7 +47,7 @@ def of_run(before: Any, after: Any, tolerance: float) -> Iterator[Change]:
 
 
 def numbers(before: Any, after: Any) -> dict[str, tuple[float, float]]:
-    """Pairs of numbers by name; not a number where one of the two lacks it."""
+    """Pairs of numbers by name; NaN where one of the two lacks it."""
     flat = [
         {f"{q} {norm}": value for q, norms in result.errors.items() for norm, value in norms.items()} | result.values
         for result in (before, after)

@@ -1,4 +1,4 @@
-"""What a study folder holds, read once: the Study, its Results, and what the order rule says of them."""
+"""Content of a study folder, read once: the Study, its Results, and what the order rule says of them."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -23,10 +23,19 @@ Result = ResultRecord[Any]
 
 @dataclass(frozen=True)
 class Record:
-    """A study as stored. `results` by the digest that the study's runs have now; runs not done are not in it.
+    """Study as stored, with what the order rule and the checks say of it.
 
-    `earlier` says that all results come from other sources than those installed: their numbers stand, but a new run of
-    the study would compute them again.
+    Parameters
+    ----------
+    store
+        The folder.
+    study
+        Its runs and plans.
+    results
+        Results of the case by the digest that the study's runs have now; runs not done are not in it.
+    earlier
+        Whether all results were computed with another source hash than that of what is installed: their numbers stand,
+        but a new run of the study would compute them again.
     """
 
     store: Store
@@ -46,7 +55,7 @@ class Record:
 
     @cached_property
     def series(self) -> list[Series]:
-        """One a method, solution and particle count; methods as declared by the study, fewest particles first."""
+        """Refinements, one for each method, solution and particle count; methods in order, few particles first."""
         return collect(self.study.runs)
 
     @cached_property
@@ -58,12 +67,12 @@ class Record:
 
     @cached_property
     def drawn(self) -> list[Series]:
-        """The refinements that figures show: of what else varies, those with the first value."""
+        """Refinements that figures show: of what else varies, those with the first value."""
         first = {name: getattr(self.study.runs[0], name) for name in self.varied}
         return [s for s in self.series if all(getattr(s.first, name) == value for name, value in first.items())]
 
     def columns(self, run: Run) -> dict[str, Any]:
-        """What names the refinement of a run in a table."""
+        """Names and values that tell the refinement of a run in a table."""
         names = (*(name for name in USUAL if hasattr(run, name)), *self.varied)
         return {name: getattr(run, name) for name in names}
 
@@ -74,9 +83,9 @@ class Record:
         more += [f"{name} {getattr(run, name)}" for name in self.varied]
         return ", ".join([words.series(run), *more])
 
-    def series_of(self, declared: QuantityPlan[Any]) -> Series:
-        """The refinement that a declared quantity is measured on."""
-        return next(s for s in self.series if s.head == declared.head)
+    def series_of(self, plan: QuantityPlan[Any]) -> Series:
+        """Refinement that a planned quantity is measured on."""
+        return next(s for s in self.series if s.head == plan.head)
 
     @property
     def solutions(self) -> list[str]:
@@ -89,11 +98,11 @@ class Record:
         return [run for run in self.study.runs if run.digest not in self.results]
 
     def result(self, run: Run) -> Any:
-        """The stored Result of a run, None if it is still to be done."""
+        """Stored Result of a run, None if it is still to be done."""
         return self.results.get(run.digest)
 
     def error(self, run: Run, quantity: str, norm: str) -> float | None:
-        """An error of a finished run; None if the run failed, is still to be done, or has no such error."""
+        """Error of a finished run; None if the run failed, is still to be done, or has no such error."""
         result = self.result(run)
         if result is None or result.status == "failed":
             return None
@@ -101,34 +110,34 @@ class Record:
         return found
 
     def errors(self, series: Series, quantity: str, norm: str) -> list[tuple[Run, float]]:
-        """The finished levels of a series with their error, coarse to fine; of replicates the mean, as is judged."""
+        """Finished levels of a series with their error, coarse to fine; of replicates the mean, as is judged."""
         levels = zip(series.runs, replicated(series, self.results, quantity, norm), strict=True)
         return [(run, middle(errors)) for run, errors in levels if errors]
 
     def failed(self, series: Series) -> list[Run]:
-        """The levels of a series that failed, coarse to fine."""
+        """Levels of a series that failed, coarse to fine."""
         levels = [(runs[0], level(runs, self.results, "u", "rms")) for runs in series.replicates]
         return [run for run, (_, failure, _) in levels if failure and failure.kind is not FailureKind.NOT_RUN]
 
     @property
     def replicates(self) -> int:
-        """The most runs that one level has."""
+        """Largest number of runs of one level."""
         return max((len(runs) for series in self.series for runs in series.replicates), default=1)
 
     def arrays(self, run: Run) -> Arrays:
-        """The particles of a stored run at its last step. Raises StoreError if they cannot be read."""
+        """Particles of a stored run at its last step. Raises StoreError if they cannot be read."""
         return self.store.arrays(self.results[run.digest].digest)
 
 
 def read(folder: Path) -> Record:
-    """The Record of a study folder. Raises StoreError if the folder is none or is broken."""
+    """Read a study folder as a Record. Raises StoreError if it is not a study folder, or broken."""
     store = Store(folder, case_of(folder))
     study = store.study()
     return Record(store, study, *held(store, study))
 
 
 def held(store: Store, study: Any) -> tuple[dict[str, Any], bool]:
-    """Results of a study of any case by digest, and whether they are all of earlier sources, as there are no others."""
+    """Results of a study by digest, and whether all of them have an earlier source hash, as there are no others."""
     exact = {run.digest: result for run in study.runs if (result := store.get(run.digest))}
     if exact:
         return exact, False
@@ -147,7 +156,7 @@ def _all(store: Store) -> Iterator[Result]:
 
 
 def joined(*parts: Mapping[str, Any]) -> dict[str, Any]:
-    """One row of several parts. Raises ValueError where two of them have a column of the same name."""
+    """Row of several parts. Raises ValueError where two of them have a column of the same name."""
     row: dict[str, Any] = {}
     for part in parts:
         both = row.keys() & part.keys()
@@ -158,7 +167,7 @@ def joined(*parts: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def flat(values: Mapping[str, Any]) -> dict[str, Any]:
-    """The same with a pair as two columns, NAME_x and NAME_y."""
+    """Values with a pair as two columns, NAME_x and NAME_y."""
     found: dict[str, Any] = {}
     for name, value in values.items():
         pair = isinstance(value, tuple)

@@ -1,4 +1,4 @@
-"""How names, numbers and outcomes are written: one place, so that every table, figure and sentence says it alike."""
+"""Spelling of names, numbers and outcomes, so that every table, figure and sentence says it alike."""
 
 import math
 from typing import Any
@@ -26,12 +26,12 @@ DASH, MINUS, TIMES = "\N{EN DASH}", "\N{MINUS SIGN}", "\N{MULTIPLICATION SIGN}"
 
 
 def method(name: str) -> str:
-    """The name of a method as people write it; the command's word where nothing else is known."""
+    """Name of a method as people write it; the command's word where nothing else is known."""
     return METHODS.get(name, label(name).replace("_", " "))
 
 
 def quantity(name: str) -> str:
-    """The symbol of a quantity."""
+    """Symbol of a quantity."""
     return QUANTITIES.get(name, name)
 
 
@@ -41,7 +41,7 @@ def series(of: Any) -> str:
 
 
 def sci(value: float | None) -> str:
-    """Four digits: 1.127e-5; a dash for nothing."""
+    """Number with four digits: 1.127e-5; a dash for nothing."""
     if value is None or math.isnan(value):
         return DASH
     if math.isinf(value) or value == 0:
@@ -51,55 +51,55 @@ def sci(value: float | None) -> str:
 
 
 def order(value: float | None) -> str:
-    """Two decimals with a true minus sign; a dash for nothing."""
+    """Order with two decimals with a true minus sign; a dash for nothing."""
     if value is None or math.isnan(value):
         return DASH
     return "∞" if math.isinf(value) else f"{value:.2f}".replace("-0.00", "0.00").replace("-", MINUS)
 
 
 def percent(part: float, digits: int = 1, sign: str = "") -> str:
-    """A fraction of 0.034 as 3.4 %."""
+    """Fraction as per cent: 0.034 as 3.4 %."""
     return f"{100 * part:{sign}.{digits}f} %".replace("-", MINUS)
 
 
 def interval(ends: tuple[float, float] | None) -> str:
-    """`1.98 to 2.03`; a dash where two levels or fewer leave none."""
+    """Interval such as `1.98 to 2.03`; a dash where two levels or fewer leave none."""
     return DASH if ends is None else f"{order(ends[0])} to {order(ends[1])}"
 
 
 def few(value: float | None) -> str:
-    """One decimal of a count, 16.3, two digits below one, 0.012; a dash for nothing."""
+    """Count with one decimal, 16.3, two digits below one, 0.012; a dash for nothing."""
     if value is None or math.isnan(value):
         return DASH
     return f"{value:.1f}" if value >= 1 else f"{value:.2g}"
 
 
 def shift(run: Run) -> str:
-    """Where the particles of a replicate lie, in shares of their spacing; a dash at their usual places."""
-    return DASH if not any(run.offset) else ", ".join(order(share) for share in run.offset)
+    """Shift of the particles of a replicate, in fractions of their spacing; a dash at their usual positions."""
+    return DASH if not any(run.offset) else ", ".join(order(part) for part in run.offset)
 
 
 def cell_size(cells: int) -> str:
-    """1/64: people count cells."""
+    """Cell size such as 1/64: people count cells."""
     return f"1/{cells}"
 
 
 def size(h: float) -> str:
-    """1/64 for a cell size of 0.015625; the number itself where it is not one over a whole number."""
+    """Cell size as 1/64 for 0.015625; the number itself where it is not one over a whole number."""
     cells = round(1 / h)
     return cell_size(cells) if cells > 1 and abs(cells * h - 1) < 1e-5 else f"{h:.4g}"
 
 
 def short(error: float) -> str:
-    """Two digits: 4.8e-3."""
+    """Number with two digits: 4.8e-3."""
     return f"{error:.1e}".replace("e-0", "e-").replace("e+0", "e+")
 
 
 def sentence(text: str) -> str:
-    """A capital letter in front, a full stop behind."""
+    """Sentence: a capital letter in front, a full stop at the end."""
     return f"{text[:1].upper()}{text[1:]}." if text else ""
 
 
 def count(number: int, noun: str) -> str:
-    """`1 run`, `2 runs`."""
+    """Count with its noun: `1 run`, `2 runs`."""
     return f"{number} {noun}" if number == 1 else f"{number} {noun}s"

@@ -30,7 +30,7 @@ from mpm_verify.solver.source_hash import PACKAGE, TOP, source_hash
 
 Function = Callable[..., Any]
 
-BLOCK = 32  # particles in a weights table: 16 neighbours of 32 particles are 16 kB, half of a level-1 cache
+BLOCK = 32  # particles in a weights table: 16 support nodes of 32 particles are 16 kB, half of a level-1 cache
 
 F1, F2, F3, I1 = float64[::1], float64[:, ::1], float64[:, :, ::1], int64[::1]
 f8, i8, flag, nothing = float64, int64, boolean, void
@@ -51,7 +51,7 @@ def kept_in(name: str, *hashes: str) -> Path:
 
 
 def folder_of(function: Function) -> Path | None:
-    """Where the compiled function is kept; None for one that stands in no file.
+    """Folder of a compiled function; None for one that stands in no file.
 
     A file that was generated into such a folder is kept with its kernels. A user's file counts with the data in its
     modules, which Numba takes for constants.
@@ -94,7 +94,7 @@ class Locator(_CacheLocator):
 
     @classmethod
     def from_function(cls, function: Function, file: str) -> "Locator | None":
-        """Only for those of ours."""
+        """Locator of a function that kernel() compiles; None for any other."""
         return cls(function, file) if hasattr(function, "folder") else None
 
 
@@ -102,7 +102,22 @@ CacheImpl._locator_classes = [Locator, *CacheImpl._locator_classes]
 
 
 def kernel(signature: Any = None, *, parallel: bool = False, inline: bool = False) -> Callable[[Function], Function]:
-    """Compile a function at import for one explicit signature; with `inline`, make it a helper of other kernels."""
+    """Compile a function at import for one explicit signature.
+
+    Parameters
+    ----------
+    signature
+        Numba signature such as ``nothing(F2, f8)``; an inlined helper needs none.
+    parallel
+        Whether ``prange`` loops run on several threads.
+    inline
+        Whether this is a helper that is written into the kernels that call it.
+
+    Returns
+    -------
+    Callable
+        Decorator that returns the compiled function.
+    """
 
     def compile_function(function: Function) -> Function:
         if inline:
@@ -127,5 +142,5 @@ def function_type(signature: Any) -> Any:
 
 
 def use_threads(threads: int) -> None:
-    """Threads of the parallel kernels from now on; more than the machine has are no use and not taken."""
+    """Set the threads of the parallel kernels from now on; more than the machine has are no use and not taken."""
     numba.set_num_threads(max(1, min(threads, settings.NUMBA_NUM_THREADS)))

@@ -12,17 +12,28 @@ from mpm_verify.solver._jit import F1, F2, f8, flag, i8, kernel, nothing
 from mpm_verify.solver.state import Floats, Grid
 
 Kind = Literal["roller", "fixed", "free"]
-MASS_CUTOFF = 1e-12  # of a particle's mass: below it a node's velocity is 0/0
+MASS_CUTOFF = 1e-12  # fraction of a particle's mass: below it a node's velocity is 0/0
 
 
 @dataclass
 class Walls:
-    """Velocity given at nodes: `held` (n,2) where, `value` (n,2) at the end of the step, `rate` (n,2) its acceleration.
+    """Velocity components that are given at nodes.
 
     A node that is held has the wall's velocity before the step too. So its acceleration is the wall's own, and not what
     would bring the particles' velocity to the wall's: that reaction, handed on to the particles by FLIP, costs v half
-    an order near the wall. With `stops` it is handed on all the same: bodies that strike a wall are stopped by nothing
-    else, and FLIP would let them keep a velocity with which they do not move.
+    an order near the wall.
+
+    Parameters
+    ----------
+    held
+        Whether a component is given, (n,2).
+    value
+        Velocity at the end of the step, (n,2); read where `held`.
+    rate
+        Acceleration of the wall, (n,2).
+    stops
+        Hand the reaction on to the particles: bodies that strike a wall are stopped by nothing else, and FLIP would
+        let them keep a velocity with which they do not move.
     """
 
     held: NDArray[np.bool_]
@@ -49,15 +60,30 @@ class MovingWalls(Walls):
 
 
 def moving(grid: Grid, rule: Rule) -> MovingWalls:
-    """Walls by a rule, see MovingWalls."""
+    """Walls that a rule gives anew for each step, see MovingWalls."""
     return MovingWalls(*rule(grid.nodes, 0.0, 0.0), rule)
 
 
 def box(grid: Grid, kind: Kind | tuple[Kind, Kind, Kind, Kind]) -> Walls:
-    """Walls on the four sides of the domain: on them and behind them, where corners of domains may reach.
+    """Walls on the four sides of the domain: on them and behind them, where corners of particle domains may reach.
 
-    A roller holds the normal component, a fixed wall both, and free means that there is none. `kind` is for all sides,
-    or one for each of left, right, bottom, top. Raises ValueError for another kind.
+    Parameters
+    ----------
+    grid
+        Grid whose sides are meant.
+    kind
+        ``roller`` holds the normal component, ``fixed`` both, and ``free`` none: one word for all sides, or one for
+        each of left, right, bottom, top.
+
+    Returns
+    -------
+    Walls
+        At rest.
+
+    Raises
+    ------
+    ValueError
+        For another kind.
     """
     kinds = (kind,) * 4 if isinstance(kind, str) else kind
     for name in kinds:

@@ -24,7 +24,7 @@ FORMER = re.compile(r"[0-9a-f]{16}-numba[\w.+]+")  # one folder for all kernels,
 
 @cache
 def base() -> Path:
-    """Below $XDG_CACHE_HOME, or a temporary folder where that cannot be written; only where nobody else may write."""
+    """Folder below $XDG_CACHE_HOME, or a temporary one; only where nobody else may write."""
     home = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "mpm-verify"
     with suppress(OSError):
         home.mkdir(mode=0o700, parents=True, exist_ok=True)
@@ -85,7 +85,7 @@ def _unused() -> list[Path]:
 
 
 def _last_use(folder: Path) -> float:
-    """When it was marked as in use; of a former version, when a file in it was last read or written."""
+    """Time at which a folder was marked as in use; of a former version, when a file in it was last read or written."""
     if not FORMER.fullmatch(folder.name):
         return folder.stat().st_mtime
     files = [item.stat() for item in folder.rglob("*") if item.is_file()]  # to list a folder is to read it

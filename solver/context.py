@@ -16,7 +16,7 @@ from mpm_verify.solver.weights import Basis
 
 @dataclass
 class Context:
-    """A body on its grid between two steps. `time` is that of x, F and sigma."""
+    """A body on its grid between two steps; `time` is the time level of x, F and sigma."""
 
     grid: Grid
     particles: Particles
@@ -35,12 +35,12 @@ class Context:
 
     @property
     def crossings(self) -> int:
-        """Faces of cells that particles have passed so far."""
+        """Number of cell faces that particles have passed so far."""
         return int(self.cell_crossings.sum())
 
     @property
     def time(self) -> float:
-        """Steps times dt, so that no rounding piles up."""
+        """Product of steps and dt, so that no rounding piles up."""
         return self.steps * self.dt
 
     @property
@@ -50,7 +50,7 @@ class Context:
 
 
 def fail(context: Context, row: int, kind: FailureKind, numbers: dict[str, float] | None = None) -> Never:
-    """Raise RunFailed for the particle in that row; what is not finite is named first, since it is the cause."""
+    """Raise RunFailed for the particle in a row; what is not finite is named first, since it is the cause."""
     p, grid = context.particles, context.grid
     finite = all(np.isfinite(a[row]).all() for a in (p.x, p.v, p.F, p.sigma))
     cell = tuple(grid.cell(p.x[row]).tolist()) if (np.abs(p.x[row]) < 1e9 * grid.dx).all() else None

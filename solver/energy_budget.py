@@ -1,16 +1,16 @@
-"""Energy and impulse of a step, term by term.
+"""Energy budget and impulse of a step, term by term.
 
 On the grid w is the velocity before the step, u the one after it, a the acceleration that the particles are given, f
 the force. The step between moves particles, strains them by the gradient of u, and makes w of the next step from u.
     walls       dt (m a - f) . (w + u)/2        what a wall holds
     transfer    dt/2 f . (u_before - w) + sum of (dt a)^2 m/2 over nodes, less over particles: what FLIP loses on its
                 way between particles and grid; velocities that the grid does not see stay with the particles
-    convection  work of the force on u, less that of the law's stress on the strain of the particles: weights that move
+    convection  work of the force on u, less that of the stress on the strain of the particles: weights that move
 None of these knows the energies of the particles, so that
     kinetic + potential + work + damping - walls + transfer + convection = constant, to round-off, in uniform gravity
-can fail: in kinetic energy, place and damping against the forces, not in the work of the law, which convection is held
-against. With other transfers than FLIP what they blend is a loss too, known as the gain of the particles alone.
-Work of a law is the mean of that of the stress at the start and at the end of a step.
+can fail: in kinetic energy, position and damping against the forces, not in the work of the stress, which convection is
+held against. With other transfers than FLIP what they blend is a loss too, known as the gain of the particles alone.
+The work of the stress is the mean of that of the stress at the start and at the end of a step.
 Transfer and convection are what the method loses, and no energy of the material. Sums are no matrix products: threads
 of BLAS wait for the next one at full speed, and take the core from another run.
 """
@@ -23,13 +23,16 @@ from mpm_verify.solver._jit import F1, F2, f8, flag, kernel, nothing
 from mpm_verify.solver.model import Model, Observer
 from mpm_verify.solver.state import Floats, Particles
 
-TRANSFER, CONVECTION, WALLS, ON_GRID, GIVEN, LATE, IMPULSE, SUMS = 0, 1, 2, 3, 4, 5, 6, 8
+TRANSFER, CONVECTION, WALLS, ON_GRID, FORCES, LATE, IMPULSE, SUMS = 0, 1, 2, 3, 4, 5, 6, 8
 
 
 @kernel(nothing(F1, F2, F2, F2, F1, f8, f8, F1))
 def between_steps(mass, momentum_force, after, undamped, g, dt, cutoff, sums):
-    """Adds what the velocities `after` (n,2) of the last step lose until this one to LATE, and half the work of the new
-    inner forces on them to CONVECTION; keeps the forces in `undamped` (n,2)."""
+    """Add up what lies between two steps, and keep the forces in `undamped` (n,2).
+
+    To LATE: what the velocities `after` (n,2) of the last step lose until this one. To CONVECTION: half the work of the
+    new inner forces on them.
+    """
     for i in range(mass.shape[0]):
         if mass[i] > cutoff:
             for a in range(2):
@@ -41,7 +44,7 @@ def between_steps(mass, momentum_force, after, undamped, g, dt, cutoff, sums):
 
 @kernel(nothing(F1, F2, F2, F2, F2, flag[:, ::1], F1, f8, f8, F1))
 def in_step(mass, momentum_force, velocity_acceleration, undamped, after, held, g, dt, cutoff, sums):
-    """Adds all that the step does on the grid, writes the kinetic energy after it to ON_GRID, keeps u in `after`."""
+    """Add up what the step does on the grid; write the kinetic energy after it to ON_GRID, and u to `after`."""
     sums[ON_GRID] = 0.0
     for i in range(mass.shape[0]):
         for a in range(2):
@@ -54,7 +57,7 @@ def in_step(mass, momentum_force, velocity_acceleration, undamped, after, held, 
                 impulse = dt * (mass[i] * velocity_acceleration[i, 2 + a] - momentum_force[i, 2 + a])
                 sums[ON_GRID] += 0.5 * mass[i] * u * u
                 sums[TRANSFER] += 0.5 * mass[i] * change * change
-                sums[GIVEN] += dt * momentum_force[i, 2 + a] * mean
+                sums[FORCES] += dt * momentum_force[i, 2 + a] * mean
                 sums[CONVECTION] += 0.5 * dt * (undamped[i, a] - mass[i] * g[a]) * u
                 sums[IMPULSE + a] += dt * (momentum_force[i, 2 + a] - undamped[i, a])
                 if held[i, a]:
@@ -69,7 +72,7 @@ def kinetic(particles: Particles) -> float:
 
 
 def work(particles: Particles) -> float:
-    """Work of the stress so far, by a law in rate form."""
+    """Work of the stress so far, of a material in rate form."""
     return 0.5 * float((particles.V0 * particles.work.sum(axis=1)).sum())
 
 
@@ -86,9 +89,17 @@ def kicked(m, before, v):
 
 @dataclass
 class Budget(Observer):
-    """Sums since the start, for a body force `gravity` (2,) per mass and particles with the kinetic energy `before`.
+    """Energy budget since the start, by sums over the steps.
 
-    For update-stress-last and laws in rate form: the stress of a step's start and end is that of the forces.
+    Holds for update-stress-last and materials in rate form, where the stress of a step's start and end is that of the
+    forces.
+
+    Parameters
+    ----------
+    gravity
+        Body force per mass, (2,).
+    before
+        Kinetic energy of the particles at the start.
     """
 
     gravity: Floats
@@ -117,21 +128,26 @@ class Budget(Observer):
         self.v = model.particles.v.copy()
 
     def after_particles(self, model: Model) -> None:
-        """Take off what the particles took of it."""
+        """Take off what the particles took of the step."""
         p = model.particles
         self.sums[TRANSFER] -= kicked(p.m, self.v, p.v)
 
     def terms(self, model: Model) -> dict[str, float]:
-        """Energies after a step: kinetic, on_grid, potential, work, damping, walls, transfer, convection.
+        """Energies after a step.
 
-        `potential` is zero where the particles have x = 0. The force of the last stress has not acted yet: the half of
-        its work that convection lacks, and the last transfer, are those of the next step, so the sum is constant up to
-        one step's work.
+        The force of the last stress has not acted yet: the half of its work that convection lacks, and the last
+        transfer, are those of the next step, so the sum is constant up to one step's work.
+
+        Returns
+        -------
+        dict
+            kinetic, on_grid, potential (zero where the particles have x = 0), work, damping, walls, transfer,
+            convection: energies per thickness.
         """
         p, sums = model.particles, self.sums
         done, transfer = work(p), float(sums[TRANSFER] + sums[LATE])
-        if model.scheme.transfer.share != 1.0 or p.affine_velocity.size:
-            transfer = float(sums[GIVEN] + sums[WALLS] + sums[LATE]) - (kinetic(p) - self.before)
+        if model.scheme.transfer.flip_fraction != 1.0 or p.affine_velocity.size:
+            transfer = float(sums[FORCES] + sums[WALLS] + sums[LATE]) - (kinetic(p) - self.before)
         return {
             "kinetic": kinetic(p),
             "on_grid": float(sums[ON_GRID]),
@@ -150,6 +166,6 @@ class Budget(Observer):
 
 
 def residual(terms: dict[str, float], first: dict[str, float]) -> float:
-    """What the terms of a budget have gained since the first ones, and should not."""
+    """Energy that the terms of a budget have gained since the first ones, and should not."""
     signs = {"kinetic": 1, "potential": 1, "work": 1, "damping": 1, "walls": -1, "transfer": 1, "convection": 1}
     return sum(sign * (terms[name] - first[name]) for name, sign in signs.items())

@@ -11,7 +11,7 @@ class FailureKind(StrEnum):
     DOMAIN_INVERTED = "domain_inverted"  # a domain with corners of its own is turned inside out
     OUTSIDE_GRID = "outside_grid"  # a particle, or a part of its domain
     DOMAIN_TOO_WIDE = "domain_too_wide"  # for the support nodes of its basis [width, limit, in cells]
-    NO_WIDTH = "no_width"  # of a domain
+    NO_WIDTH = "no_width"  # a domain of no width
     SLAB = "slab"  # a particle domain as wide as the grid
     NOT_FINITE = "not_finite"  # x, v, F or sigma of a particle
     ERROR_NOT_FINITE = "error_not_finite"  # an error norm
@@ -27,7 +27,18 @@ class FailureKind(StrEnum):
 class Failure:
     """Why a run could not go on: a result, not a crash.
 
-    `step` is -1 where no step has to do with it, `particle` the index in the initial layout, -1 if none.
+    Parameters
+    ----------
+    kind
+        What happened.
+    step
+        Steps that were done; -1 where no step has to do with it.
+    particle
+        Index in the initial layout, -1 if none.
+    cell
+        Column and row of the particle's cell, None where there is none.
+    numbers
+        What FailureKind names in brackets.
     """
 
     kind: FailureKind

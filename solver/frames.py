@@ -1,4 +1,4 @@
-"""Words that the rates share: strain increment, rotation, other frames. Plane tensors as xx, yy, xy."""
+"""Helpers of the objective rates: strain increment, rotation, other frames. Plane tensors as xx, yy, xy."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from mpm_verify.solver._jit import kernel
 
 @kernel(inline=True)
 def step_gradient(b, F0, F1):
-    """L dt of particle b in the middle of the step: xx, xy, yx, yy; not a number where the mean has lost its det F."""
+    """L dt of particle b in the middle of the step: xx, xy, yx, yy; not a number where the mean F is inverted."""
     axx = 0.5 * (F0[4 * b] + F1[4 * b])
     axy = 0.5 * (F0[4 * b + 1] + F1[4 * b + 1])
     ayx = 0.5 * (F0[4 * b + 2] + F1[4 * b + 2])
@@ -56,7 +56,7 @@ def pushed(xx, yy, xy, axx, axy, ayx, ayy):
 
 @kernel(inline=True)
 def turn_stress(b, sigma, c, s):
-    """Stress of particle b turned by (c, s), in place; zz stays."""
+    """Turn the stress of particle b by (c, s), in place; zz stays."""
     xx, yy, xy = turned(sigma[4 * b], sigma[4 * b + 1], sigma[4 * b + 3], c, s)
     sigma[4 * b] = xx
     sigma[4 * b + 1] = yy
@@ -65,7 +65,7 @@ def turn_stress(b, sigma, c, s):
 
 @kernel(inline=True)
 def push_stress(b, sigma, Axx, Axy, Ayx, Ayy, scale):
-    """Stress of particle b pushed by A and multiplied by `scale`, in place; zz is scaled alone."""
+    """Push the stress of particle b by A and multiply it by `scale`, in place; zz is scaled alone."""
     xx, yy, xy = pushed(sigma[4 * b], sigma[4 * b + 1], sigma[4 * b + 3], Axx, Axy, Ayx, Ayy)
     sigma[4 * b] = scale * xx
     sigma[4 * b + 1] = scale * yy
@@ -75,7 +75,7 @@ def push_stress(b, sigma, Axx, Axy, Ayx, Ayy, scale):
 
 @kernel(inline=True)
 def turned_strain(b, de, F0, F1, c, s):
-    """Strain increment of the middle of the step, turned by (c, s), written for particle b."""
+    """Write the strain increment of the middle of the step, turned by (c, s), of particle b to `de`."""
     Lxx, Lxy, Lyx, Lyy = step_gradient(b, F0, F1)
     xx, yy, xy = turned(Lxx, Lyy, 0.5 * (Lxy + Lyx), c, s)
     de[3 * b] = xx
@@ -106,7 +106,7 @@ def rotation_between(b, F0, F1):
 
 @kernel(inline=True)
 def pulled_strain(b, de, F0, F1):
-    """F0^T D F0 dt of particle b: what stands where R0 belongs in some negative controls."""
+    """Write F0^T D F0 dt of particle b to `de`: some negative controls have F0 where R0 belongs."""
     Lxx, Lxy, Lyx, Lyy = step_gradient(b, F0, F1)
     xx, yy, xy = pushed(
         Lxx, Lyy, 0.5 * (Lxy + Lyx), F0[4 * b], F0[4 * b + 2], F0[4 * b + 1], F0[4 * b + 3]

@@ -1,4 +1,4 @@
-"""Where particles lie at first: layouts whose domains tile a body without gaps or overlaps."""
+"""Layouts of particles at the start, whose domains tile a body without gaps or overlaps."""
 
 from dataclasses import dataclass
 from math import isqrt, pi
@@ -9,15 +9,23 @@ from mpm_verify.solver.state import Floats, Ints
 
 Offset = tuple[float, float]
 CENTRED: Offset = (0.0, 0.0)
-SIDES = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])  # of the corners, counter-clockwise
+SIDES = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])  # corners by half sides, counter-clockwise
 
 
 @dataclass(frozen=True)
 class Layout:
-    """Reference places X (P,2), volumes V0 (P,), half side vectors r0 (P,2,2) one a row.
+    """Reference positions and domains of P particles.
 
-    V0 is the area of the parallelogram of r0, and of the piece of the body that the particle stands for. `bent` (P,4,2)
-    has the corners of that piece where it is not the parallelogram.
+    Parameters
+    ----------
+    X
+        Reference positions (P,2).
+    V0
+        Areas (P,) of the parallelograms of `r0`, and of the pieces of the body that the particles stand for.
+    r0
+        Half side vectors (P,2,2), one a row.
+    bent
+        Corners (P,4,2) of those pieces where they are not the parallelograms.
     """
 
     X: Floats
@@ -30,14 +38,27 @@ class Layout:
 
     @property
     def corners(self) -> Floats:
-        """Corners (P,4,2) of the pieces, counter-clockwise; neighbours share them."""
+        """Corners (P,4,2) of the pieces, counter-clockwise; adjacent pieces share them."""
         return parallelograms(self.X, self.r0) if self.bent is None else self.bent
 
 
 def shared_corners(layout: Layout) -> tuple[Floats, Ints]:
-    """Places (C,2) of the corners of all pieces, each once, and for each piece which four are its own, (P,4)."""
+    """Corners of all pieces, each once.
+
+    Parameters
+    ----------
+    layout
+        Layout of P pieces.
+
+    Returns
+    -------
+    positions : ndarray
+        Reference positions (C,2) of the corners.
+    number : ndarray
+        Which four of them belong to each piece, (P,4).
+    """
     corners = layout.corners.reshape(-1, 2)
-    quantum = 1.047e-7 * np.ptp(corners, axis=0).max()  # no round number: a corner half-way between two would be two
+    quantum = 1.047e-7 * np.ptp(corners, axis=0).max()  # an odd one: a corner half-way between two would be two
     steps = np.rint((corners - corners.min(axis=0)) / quantum).astype(np.int64)
     _, first, number = np.unique(steps @ (1 << 32, 1), return_index=True, return_inverse=True)
     return corners[first], number.reshape(-1, 4)
@@ -50,35 +71,60 @@ def parallelograms(centre: Floats, r: Floats) -> Floats:
 
 
 def per_side(ppc: int) -> int:
-    """Particles along a cell's side. Raises ValueError where `ppc` is no square number."""
+    """Particles along a side of a cell with `ppc` of them. Raises ValueError unless that is a square number."""
     side = isqrt(max(ppc, 0))
     if side < 1 or side * side != ppc:
-        raise ValueError(f"{ppc} particles per cell is no square number; choose 1, 4, 9, 16, ...")
+        raise ValueError(f"{ppc} particles per cell is not a square number; choose 1, 4, 9, 16, ...")
     return side
 
 
 def rectangle(lower: Floats, upper: Floats, dx: float, ppc: int, offset: Offset = CENTRED) -> Layout:
-    """Regular layout of `ppc` particles in each cell of side `dx`, column by column.
+    """Regular layout of a rectangle, column by column.
 
-    `offset`, each part in (-1/2, 1/2), shifts all faces between particles by that share of their spacing; the body's
-    own edges stay, so the first and last domains are wider or narrower. Raises ValueError for another offset or `ppc`.
+    Parameters
+    ----------
+    lower, upper
+        Corners of the rectangle, (2,).
+    dx
+        Side of a grid cell.
+    ppc
+        Particles in each cell, a square number.
+    offset
+        Shift of all faces between particles along x and y, as a fraction of their spacing, each in (-1/2, 1/2). The
+        body's own edges stay, so the first and last domains are wider or narrower.
+
+    Returns
+    -------
+    Layout
+        Rectangular domains.
+
+    Raises
+    ------
+    ValueError
+        For another `ppc` or offset.
     """
     step = dx / per_side(ppc)
     return graded([faces(lower[a], upper[a], step, offset[a]) for a in (0, 1)])
 
 
 def faces(first: float, last: float, step: float, offset: float) -> Floats:
-    """Faces between particles along one axis, the ends included."""
+    """Coordinates (n+1,) of the faces between n particles on one axis, the ends included."""
     if not -0.5 < offset < 0.5:
         raise ValueError(f"an offset of {offset} spacings must lie between -0.5 and 0.5")
     count = int(np.rint((last - first) / step))
-    places: Floats = first + step * (np.arange(count + 1, dtype=np.float64) + offset)
-    places[0], places[-1] = first, last
-    return places
+    positions: Floats = first + step * (np.arange(count + 1, dtype=np.float64) + offset)
+    positions[0], positions[-1] = first, last
+    return positions
 
 
 def graded(edges: list[Floats]) -> Layout:
-    """Rectangles between the given faces along x and y, column by column."""
+    """Layout of rectangles between faces, column by column.
+
+    Parameters
+    ----------
+    edges
+        Coordinates of the faces on x and on y, (n+1,) each.
+    """
     centre = np.stack(np.meshgrid(*[(e[1:] + e[:-1]) / 2 for e in edges], indexing="ij"), axis=-1).reshape(-1, 2)
     half = np.stack(np.meshgrid(*[np.diff(e) / 2 for e in edges], indexing="ij"), axis=-1).reshape(-1, 2)
     r0 = half[:, :, None] * np.eye(2)
@@ -86,10 +132,29 @@ def graded(edges: list[Floats]) -> Layout:
 
 
 def annulus(inner: float, outer: float, dx: float, ppc: int) -> Layout:
-    """Rings around the origin, each cut into the same number of pieces, so that corners meet; ring by ring outwards.
+    """Layout of rings around the origin, each cut into the same number of pieces, so that corners meet.
 
-    The spacing is that of `ppc` particles in a cell of side `dx`, along the radius and, at the middle radius, along the
-    circle. A piece has its exact area; its place is at the middle of its radii and angles.
+    Ring by ring outwards. A piece has its exact area; its position is at the middle of its radii and angles.
+
+    Parameters
+    ----------
+    inner, outer
+        Radii of the body.
+    dx
+        Side of a grid cell.
+    ppc
+        Particles in each cell, a square number: their spacing is that of the pieces, radially and, at the middle
+        radius, on the circle.
+
+    Returns
+    -------
+    Layout
+        Pieces with bent corners.
+
+    Raises
+    ------
+    ValueError
+        Unless `ppc` is a square number.
     """
     step = dx / per_side(ppc)
     rings = max(1, round((outer - inner) / step))

@@ -1,4 +1,4 @@
-"""Words of a law that yields by the mobilised ratio eta = t/s of the plane; used by solver/material/ubcsand.py."""
+"""Helpers of a material that yields by the mobilised ratio eta = t/s of the plane: solver/material/ubcsand.py."""
 
 import numpy as np
 
@@ -22,19 +22,19 @@ def slip(t, s, G, stiff, D, a, k, eta_m):
 
 @kernel(inline=True)
 def onset(eta, x0, y0, s0, x1, y1, s1):
-    """Share of the way from the old stress to the trial at which t = eta s' is met from inside; s' in s0 and s1."""
+    """Fraction of the way from the old stress to the trial at which t = eta s' is met from inside; s' in s0 and s1."""
     dx, dy, ds = x1 - x0, y1 - y0, s1 - s0
     A = dx * dx + dy * dy - eta * eta * ds * ds
     B = x0 * dx + y0 * dy - eta * eta * s0 * ds
     C = x0 * x0 + y0 * y0 - eta * eta * s0 * s0
     root = np.sqrt(max(B * B - A * C, 0.0))
-    share = -C / (B + root) if B > 0.0 else (root - B) / A
-    return min(max(share, 0.0), 1.0)
+    fraction = -C / (B + root) if B > 0.0 else (root - B) / A
+    return min(max(fraction, 0.0), 1.0)
 
 
 @kernel(inline=True)
 def unit(x, y, ex, ey):
-    """A vector's direction; (ex, ey) where nothing is left of it: under next to no stress t slips to the last bit."""
+    """Direction of a vector; (ex, ey) where nothing is left of it: under next to no stress t slips to the last bit."""
     square = x * x + y * y
     if square == 0.0:
         return ex, ey

@@ -1,4 +1,4 @@
-"""What a run holds between two steps: a body on its grid, the strategies of a step, and who watches it."""
+"""Model of a run between two steps: a body on its grid, the strategies of a step, and who watches it."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -23,13 +23,29 @@ Deformation = Literal["linear", "exponential"]
 
 @dataclass(frozen=True)
 class Scheme:
-    """`transfer`: see solver/transfers; `stress`: when it is updated, solver/stress_update.py; `staggered`: v at half
-    steps.
+    """Choices of a step.
 
-    The start of a staggered run is v at t = -dt/2; without it the first order of time is lost. `deformation`: "linear",
-    F <- (I + A) F with A = dt L (paper eq. (4)), or "exponential", F <- (I + A + A^2/2) F, exp(A) to second
-    order. A rigid turn by w dt makes the first grow det F by 1 + (w dt)^2 a step, the second by 1 + (w dt)^4/4. The
-    second keeps det F > 0 in any step unless A has the eigenvalues -1 +- i; the first loses it at det(I + A) = 0.
+    A rigid turn by w dt makes det F grow by 1 + (w dt)^2 a step with the linear deformation, and by 1 + (w dt)^4/4 with
+    the exponential one. The second keeps det F > 0 in any step unless A has the eigenvalues -1 +- i; the first inverts
+    a particle at det(I + A) = 0.
+
+    Parameters
+    ----------
+    transfer
+        How velocities go between particles and grid, see solver/transfers.
+    stress
+        Stress update: ``usl``, ``musl`` or ``usf``, see solver/stress_update.py.
+    staggered
+        Whether v has the time levels half a step before those of x, F and sigma: a run starts with v at t = -dt/2.
+        Without it usl and musl are of first order in time.
+    deformation
+        ``linear``: F <- (I + A) F with A = dt L (paper eq. (4)); ``exponential``: F <- (I + A + A^2/2) F, exp(A) to
+        second order.
+
+    Raises
+    ------
+    ValueError
+        For another stress update or deformation.
     """
 
     transfer: Transfer = field(default_factory=Flip)
@@ -48,7 +64,7 @@ class Scheme:
 
 
 class Observer:
-    """Watches the steps of a run and changes nothing. Hooks that a subclass does not override are not called."""
+    """Watcher of the steps of a run, which changes nothing; hooks that a subclass does not override are not called."""
 
     def before_forces(self, model: "Model") -> None:
         """Look at mass, momentum and force at the nodes, before damping and the equation of motion."""
@@ -57,7 +73,7 @@ class Observer:
         """Look at the nodes' new velocities and accelerations; the particles still have their old ones."""
 
     def after_particles(self, model: "Model") -> None:
-        """Look at the particles' new velocities; their stress is still the old one, except with usf."""
+        """Look at the particles' new velocities; their stress is still the old one, except with update-stress-first."""
 
     def after_step(self, model: "Model") -> None:
         """Look at the end of a step, `model.steps` counts it."""
@@ -68,7 +84,30 @@ HOOKS = ("before_forces", "after_motion", "after_particles", "after_step")
 
 @dataclass
 class Model(Context):
-    """All that one run holds; v is half a step behind x, F and sigma in a staggered run."""
+    """All that one run holds: what the parts of a step work on, see Context, and the choices of the step.
+
+    Parameters
+    ----------
+    grid, particles, basis, material, walls
+        A body on its grid. The particles are put into the order of their slabs, and the material and the transfer
+        start: write x, v, F and sigma before.
+    dt
+        Length of a step, in time.
+    scheme
+        Choices of a step.
+    damping
+        Damping of the force at the nodes, None for none.
+    smoothing
+        Smoothing of strain and stress, None for none.
+    steps
+        Steps done; `time` is steps * dt, the time level of x, F and sigma. In a staggered run v has the level dt/2
+        before it.
+
+    Raises
+    ------
+    ValueError
+        For a material that cannot be smoothed.
+    """
 
     scheme: Scheme = Scheme()
     damping: "Damping | None" = None
@@ -86,7 +125,7 @@ class Model(Context):
         self.scheme.transfer.start(self)
 
     def watch(self, *observers: Observer) -> None:
-        """Call the observers' hooks from now on, after those that watch already."""
+        """Call the hooks of `observers` from now on, after those that watch already."""
         for observer in observers:
             for hook, called in self.hooks.items():
                 if getattr(type(observer), hook) is not getattr(Observer, hook):
@@ -99,7 +138,13 @@ class Model(Context):
 
 
 def check_time_step(model: Model) -> None:
-    """Raise RunFailed where dt is above dx / (c + |v|), the time a wave needs to cross a cell."""
+    """Check that dt is a stable step: at most dx / (c + |v|), the time a wave needs to cross a cell.
+
+    Raises
+    ------
+    RunFailed
+        UNSTABLE_STEP, with dt and its limit.
+    """
     speed = model.material.wave_speed() + float(np.hypot(*model.particles.v.T).max())
     limit = model.grid.dx / speed
     if model.dt > limit:

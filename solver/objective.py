@@ -1,9 +1,10 @@
-"""Objective integration of rate-type laws: the stress is carried along with the motion, the law sees the strain alone.
+"""Objective integration of materials in rate form: the stress goes along with the motion, the material sees strain.
 
 A *rate* (solver/rates) is two kernels over the flat arrays of a block. `unrotate(F0, F1, sigma, de)` brings the Cauchy
-stress at the start of the step into the frame of the law, in place, and writes the strain increment D dt in that frame;
-`rotate(F0, F1, sigma)` brings the stress that the law gives to the end of the step. A *law* is one kernel in between,
-`respond(constants, sigma, de, history)`. F0, F1: xx, xy, yx, yy; sigma: xx, yy, zz, xy; de: xx, yy, xy (of the tensor).
+stress at the start of the step into the frame of the material, in place, and writes the strain increment D dt in that
+frame; `rotate(F0, F1, sigma)` brings the stress that the material gives to the end of the step. The *material* is one
+kernel in between, `respond(constants, sigma, de, history)`. F0, F1: xx, xy, yx, yy; sigma: xx, yy, zz, xy; de: xx, yy,
+xy (of the tensor).
 
 Strain increments are those of the middle of the step, L dt = (F1 - F0) ((F0 + F1)/2)^-1: second order, and without
 strain in a rigid rotation of any angle. With F0 in place of the mean a rotation by a strains by -a^2/2 a step.
@@ -21,7 +22,15 @@ SIGNATURE = nothing(function_type(UNROTATE), function_type(ROTATE), function_typ
 
 
 class Rate:
-    """How stress goes along with the motion; `order` in time of what comes out, 0 if it does not converge."""
+    """How stress goes along with the motion.
+
+    Attributes
+    ----------
+    order
+        Order in time of the stress, 0 if it does not converge.
+    unrotate, rotate
+        Kernels of signatures UNROTATE and ROTATE.
+    """
 
     order: ClassVar[float]
     unrotate: ClassVar[Function]
@@ -29,11 +38,11 @@ class Rate:
 
 
 @kernel(nothing(function_type(UNROTATE), function_type(ROTATE), function_type(RESPOND), *[F1] * 8))
-def integrate_block(unrotate, rotate, respond, constants, F_old, F_felt, F, sigma, history, work, de):
-    """One step of a block, all arrays flat; F becomes F_old of the next."""
-    unrotate(F_old, F_felt, sigma, de)
+def integrate_block(unrotate, rotate, respond, constants, F_old, F_smoothed, F, sigma, history, work, de):
+    """Integrate one step of a block, all arrays flat; F becomes F_old of the next."""
+    unrotate(F_old, F_smoothed, sigma, de)
     first = sigma.copy()
-    asked = de.copy()  # a law may take from the strain increment what it gives no stress for
+    asked = de.copy()  # a material may take from the strain increment what it gives no stress for
     respond(constants, sigma, de, history)
     for b in range(work.shape[0] // 2):
         J = 0.5 * (F_old[4 * b] * F_old[4 * b + 3] - F_old[4 * b + 1] * F_old[4 * b + 2])
@@ -47,16 +56,16 @@ def integrate_block(unrotate, rotate, respond, constants, F_old, F_felt, F, sigm
 
 
 @kernel(SIGNATURE, parallel=True)
-def integrate(unrotate, rotate, respond, constants, F_old, F_felt, F, sigma, history, work):
-    """One step of all particles: F_old (P,4) at the start and F (P,2,2) at the end; sigma (P,4), history (P,H).
+def integrate(unrotate, rotate, respond, constants, F_old, F_smoothed, F, sigma, history, work):
+    """Integrate one step of all particles, from F_old (P,4) to F (P,2,2): sigma (P,4), history (P,H), work (P,2).
 
-    The strain is that of the way from F_old to `F_felt` (P,2,2), which is F where nothing smooths it. Adds to `work`
-    (P,2) the work per reference volume of the stress at the start and at the end of the step; the mean is the law's.
+    The strain is that of the way from F_old to `F_smoothed` (P,2,2), which is F where nothing smooths it. Work is per
+    reference volume, of the stress at the start and at the end of the step; that of the material is the mean.
     """
     count = F.shape[0]
     memory = history.shape[1]
     olds = F_old.reshape(-1)
-    felts = F_felt.reshape(-1)
+    smoothed = F_smoothed.reshape(-1)
     Fs = F.reshape(-1)
     sigmas = sigma.reshape(-1)
     histories = history.reshape(-1)
@@ -66,7 +75,7 @@ def integrate(unrotate, rotate, respond, constants, F_old, F_felt, F, sigma, his
         hi = min(lo + BLOCK, count)
         de = np.empty(3 * BLOCK)
         integrate_block(
-            unrotate, rotate, respond, constants, olds[4 * lo : 4 * hi], felts[4 * lo : 4 * hi], Fs[4 * lo : 4 * hi],
+            unrotate, rotate, respond, constants, olds[4 * lo : 4 * hi], smoothed[4 * lo : 4 * hi], Fs[4 * lo : 4 * hi],
             sigmas[4 * lo : 4 * hi], histories[memory * lo : memory * hi], works[2 * lo : 2 * hi],
             de[: 3 * (hi - lo)],
         )  # fmt: skip

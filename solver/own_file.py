@@ -22,7 +22,7 @@ from typing import Any
 
 from mpm_verify.solver.source_hash import PACKAGE, file_hash, find
 
-PREFIX = "own_"  # of the package of a user's file
+PREFIX = "own_"  # the package of a user's file begins so
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class Held:
 
 
 def module_of(path: Path) -> ModuleType:
-    """The module of a file, executed when the file or one that it has imported is another than before.
+    """Module of a user's file, executed when the file or one that it has imported is another than before.
 
     Raises ValueError with one line, and the file's line if there is one.
     """
@@ -104,7 +104,7 @@ def without_exit() -> None:
 
 
 def guarded(path: Path, action: Callable[[], Any]) -> Any:
-    """Whatever the user's code raises becomes one line with the line of the file."""
+    """Do what runs a user's code; whatever that raises becomes a ValueError of one line, with the line of the file."""
     try:
         return action()
     except SyntaxError as error:
@@ -118,7 +118,7 @@ def guarded(path: Path, action: Callable[[], Any]) -> Any:
 
 
 def shortened(value: Any) -> str:
-    """One line of at most 100 characters."""
+    """Text of a value in one line of at most 100 characters."""
     text = " ".join((value if isinstance(value, str) else repr(value)).split())
     return text if len(text) <= 100 else f"{text[:97]}..."
 
@@ -129,7 +129,7 @@ _held: dict[Path, Held] = {}
 
 
 def _beside(name: str) -> list[ModuleType]:
-    """Of the module of a user's file: those that were executed beside it, itself among them."""
+    """Modules that were executed beside that of a user's file, itself among them."""
     family = name.partition(".")[0]
     if not family.startswith(PREFIX):
         return []
@@ -144,13 +144,13 @@ def _content(file: str) -> bytes:
 
 
 def _executed(path: Path, file: Path, files: dict[str, bytes]) -> ModuleType:
-    """The module of a file; it and those that it imports from beside it, now or later, write their texts to `files`."""
+    """Module of a file; it and those that it imports from beside it, now or later, write their texts to `files`."""
     try:
         file.read_text(encoding="utf-8")
     except OSError as error:
         raise ValueError(f"{path}: {(error.strerror or str(error)).lower()}") from None
     except UnicodeDecodeError:
-        raise ValueError(f"{path} is no text") from None
+        raise ValueError(f"{path} is not a text") from None
     family = f"{PREFIX}{hashlib.sha256(str(file).encode()).hexdigest()[:16]}"
     for name in [name for name in sys.modules if name == family or name.startswith(f"{family}.")]:
         del sys.modules[name]
@@ -167,7 +167,7 @@ def _executed(path: Path, file: Path, files: dict[str, bytes]) -> ModuleType:
 
 
 class Loader(SourceFileLoader):
-    """Executes a file from its text, in a module whose imports look beside the user's file first."""
+    """Loader that executes a file from its text, in a module whose imports look beside the user's file first."""
 
     def get_code(self, fullname: str) -> CodeType:
         """The compiled text, from no __pycache__."""
@@ -185,10 +185,10 @@ class Loader(SourceFileLoader):
 
 
 class Beside(MetaPathFinder):
-    """Finds the modules beside a user's file, below the package of that file."""
+    """Finder of the modules beside a user's file, below the package of that file."""
 
     def find_spec(self, fullname: str, path: Any, target: ModuleType | None = None) -> ModuleSpec | None:
-        """A fresh look at the folder."""
+        """Look into the folder anew."""
         if path is None or not fullname.startswith(PREFIX):
             return None
         specs = (FileFinder(folder, (Loader, [".py"])).find_spec(fullname) for folder in path)

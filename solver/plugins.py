@@ -1,6 +1,7 @@
-"""A plug-in is a file: its name is the word on the command line, and the class in it has that name in CamelCase.
+"""Plug-ins: each is a file whose name is the word on the command line; its class has that name in CamelCase.
 
-Any plug-in but a case may be a user's file, path/to/own.py or path/to/own.py:key=value. A package with a module `_own`
+A plug-in may be a user's file, path/to/own.py or path/to/own.py:key=value; of a case, see the contract in
+cases/harness/contract.py. A package with a module `_own`
 makes a class of it in its own way, `_own.load(path)`; of the others the file holds the class.
 """
 
@@ -37,13 +38,13 @@ KINDS = {
     NEGATIVE_CONTROLS: "negative control",
     SMOOTHINGS: "smoothing",
 }
-USUAL_RATE = "green_naghdi"  # of a constitutive model in rate form
+USUAL_RATE = "green_naghdi"  # objective rate of a material in rate form that names none
 FILE = r"(.+?\.py)(?::(\w+=.*|[^/\\]*))?"  # a path and parameters
 CONTRACTS = {  # what the class of a kind has at least
     METHODS: ("support", "order", "fill"),
     MATERIALS: ("start", "update", "wave_speed"),
     SOLUTIONS: ("displacement", "boundary", "lower", "upper", "duration", "C", "margin", "material", "layout"),
-    TRANSFERS: ("share", "start", "give", "filter", "take"),
+    TRANSFERS: ("flip_fraction", "start", "give", "filter", "take"),
     LAYOUTS: ("check", "__call__"),
     RATES: ("unrotate", "rotate", "order"),
     NEGATIVE_CONTROLS: ("unrotate", "rotate", "order"),
@@ -52,16 +53,24 @@ CONTRACTS = {  # what the class of a kind has at least
 
 
 def available(package: str) -> list[str]:
-    """Names of the plug-ins in a package such as `solver.basis`, found without importing anything.
+    """Names of the plug-ins in a package, found without importing anything.
 
-    Of cases, the folders that hold what computes a run: the harness has a `case.py` too, which is the contract.
+    Parameters
+    ----------
+    package
+        A package of KINDS, such as METHODS.
+
+    Returns
+    -------
+    list of str
+        Sorted.
     """
     files = (file.stem for file in folder(package).glob("*.py") if not file.stem.startswith("_"))
     return sorted([*files, *(file.parent.name for file in folder(package).glob("*/execute.py"))])
 
 
 def folder(package: str) -> Path:
-    """Where the files of a package are."""
+    """Folder of a package."""
     return TOP.joinpath(*package.split(".")[1:])
 
 
@@ -72,7 +81,25 @@ def path(package: str, name: str) -> Path:
 
 
 def load(package: str, name: str) -> Any:
-    """The class of plug-in `name`, or of a user's file. Raises ValueError that lists the choices if there is none."""
+    """Class of a plug-in.
+
+    Parameters
+    ----------
+    package
+        A package of KINDS, such as METHODS.
+    name
+        A name in it, or the path of a user's file.
+
+    Returns
+    -------
+    type
+        The class in the file.
+
+    Raises
+    ------
+    ValueError
+        If there is none; it lists the choices, or says what the user's file lacks.
+    """
     if is_file(name) and package in CONTRACTS:
         own = find(f"{package}._own")
         return import_module(f"{package}._own").load(Path(name)) if own else own_class(package, Path(name))
@@ -90,7 +117,7 @@ def meant(word: str, known: Iterable[str]) -> str:
 
 
 def own_class(package: str, path: Path) -> Any:
-    """The class of a user's file: the one named as the file, or else the only one that keeps the contract.
+    """Class of a user's file: the one named as the file, or else the only one that keeps the contract.
 
     Raises ValueError that says what is missing.
     """
@@ -108,7 +135,7 @@ def own_class(package: str, path: Path) -> Any:
 
 
 def lacking(plugin: type, contract: Sequence[str]) -> list[str]:
-    """What a class has not of what its kind asks for: neither itself nor as a field."""
+    """Names that the contract asks for and a class has neither as an attribute nor as a field."""
     known = {item.name for item in fields(plugin)} if is_dataclass(plugin) else set()
     return [name for name in contract if not hasattr(plugin, name) and name not in known]
 
@@ -145,9 +172,24 @@ def camel(name: str) -> str:
 
 
 def create(package: str, specification: str) -> Any:
-    """The plug-in with its parameters from `name` or `name:key=value,key=value`.
+    """Make a plug-in with its parameters.
 
-    Raises ValueError with one line that says what is allowed.
+    Parameters
+    ----------
+    package
+        A package of KINDS, such as METHODS.
+    specification
+        ``name`` or ``name:key=value,key=value``; a user's file by its path in place of the name.
+
+    Returns
+    -------
+    object
+        The plug-in: a basis, material, solution, transfer, layout or smoothing.
+
+    Raises
+    ------
+    ValueError
+        One line that says what is allowed.
     """
     name, rest = split(specification)
     plugin = load(package, name)
@@ -182,11 +224,11 @@ def canonical(package: str, specification: str) -> str:
 
 
 def number(name: str, key: str, value: str) -> float:
-    """The value of a parameter. Raises ValueError for what is no finite number."""
+    """Value of a parameter. Raises ValueError for what is not a finite number."""
     try:
         parsed = float(value)
     except ValueError:
-        raise ValueError(f"{name}: {key}={value!r} is no number") from None
+        raise ValueError(f"{name}: {key}={value!r} is not a number") from None
     if not isfinite(parsed):
         raise ValueError(f"{name}: {key}={value} must be a finite number")
     return parsed

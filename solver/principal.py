@@ -25,8 +25,8 @@ def in_order(up, down, zz):
 
 
 @kernel(inline=True)
-def in_place(s1, s2, s3, up, down, zz):
-    """The way back from the order of up, down, zz: what became of each of these three."""
+def unsorted(s1, s2, s3, up, down, zz):
+    """New principal stresses in the plane and zz, from sorted ones: what became of each of up, down, zz."""
     return (
         s2 if zz > up else s1,
         s2 if zz < down else s3,
@@ -35,20 +35,20 @@ def in_place(s1, s2, s3, up, down, zz):
 
 
 @kernel(inline=True)
-def along(up, down, xx, yy, xy, radius):
+def on_axes(up, down, xx, yy, xy, radius):
     """xx, yy, xy of new principal stresses on the axes of the old stress; for radius = 0 any axes serve, and up = down.
 
     The new stress need not keep its distance from isotropy, only its axes: they go back by a ratio of radii.
     """
     mean = 0.5 * (up + down)
-    share = 0.5 * (up - down) / radius if radius > 0.0 else 0.0
-    half = 0.5 * (xx - yy) * share
-    return mean + half, mean - half, xy * share
+    scale = 0.5 * (up - down) / radius if radius > 0.0 else 0.0
+    half = 0.5 * (xx - yy) * scale
+    return mean + half, mean - half, xy * scale
 
 
 @kernel(inline=True)
 def advance_elastic(lam, shear, sigma, de, plane):
-    """Trial stress in place; plane: larger and smaller principal stress in the plane, and radius, of each particle."""
+    """Write the trial stress in place; to `plane` both principal stresses in the plane, larger first, and radius."""
     for b in range(sigma.shape[0] // 4):
         bulk = lam * (de[3 * b] + de[3 * b + 1])
         xx = sigma[4 * b] + (bulk + shear * de[3 * b])

@@ -5,9 +5,16 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Promise:
-    """How the error of u falls on refinement: with an `order`, or None; then it `stalls`, or else it grows.
+    """How the error of u falls on refinement.
 
-    `source`: who says so, before any run of ours.
+    Parameters
+    ----------
+    order
+        Order in dx; None where the error does not fall with one.
+    stalls
+        Without an order: whether the error stalls, or else grows.
+    source
+        Publication that says so, before any run.
     """
 
     order: float | None

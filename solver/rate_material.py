@@ -1,4 +1,4 @@
-"""What a material in rate form is: one kernel that responds to strain increments, and an objective rate around it."""
+"""Contract of a material in rate form: one kernel that responds to strain increments, an objective rate around it."""
 
 from dataclasses import dataclass
 from functools import cache
@@ -15,11 +15,21 @@ from mpm_verify.solver.state import Floats, Particles
 
 @dataclass(frozen=True)
 class RateMaterial(Material):
-    """`rate`: the objective rate, a file of solver/rates; raises ValueError for another.
+    """Material in rate form.
 
-    A subclass has `respond`, a kernel of solver.objective.RESPOND, its `constants` (k,), and in `memory` the names of
-    what it keeps of the path, one column of Particles.history each. Negative controls (solver/negative_controls) are
-    taken as a rate too: they are there to be seen failing.
+    A subclass has `respond`, a kernel of signature solver.objective.RESPOND, its `constants` (k,), and in `memory` the
+    names of what it keeps of the path, one column of Particles.history each.
+
+    Parameters
+    ----------
+    rate
+        Objective rate, a file of solver/rates; negative controls (solver/negative_controls) are taken too: they are
+        there to be seen failing.
+
+    Raises
+    ------
+    ValueError
+        For another rate.
     """
 
     rate: str = USUAL_RATE
@@ -29,7 +39,7 @@ class RateMaterial(Material):
         objective(self.rate)
 
     def constants(self) -> Floats:
-        """What the kernel reads."""
+        """Constants (k,) that the kernel reads."""
         raise NotImplementedError
 
     def initial(self, sigma: Floats) -> Floats:
@@ -37,17 +47,28 @@ class RateMaterial(Material):
         return np.zeros((len(sigma), len(self.memory)))
 
     def start(self, particles: Particles) -> None:
-        """F at the start of the first step, and the history, unless it goes on from an earlier run."""
+        """Write F at the start of the first step, history and work, unless they go on from an earlier run."""
         if not particles.F_old.size:
             particles.F_old = particles.F.reshape(-1, 4).copy()
             particles.history = self.initial(particles.sigma)
             particles.work = np.zeros((len(particles), 2))
 
     def update(self, particles: Particles, dt: float, F_smoothed: Floats | None = None) -> None:
-        """Write particles.sigma, history and work, from F_old and the new F; the step's length does not matter.
+        """Write particles.sigma, history and work, from F_old and the new F.
 
-        The strain is that of the way from F_old to `F_smoothed` (P,2,2), if it is given, and the rotation that of F.
-        Raises ValueError for particles that the material has not started: there is no F to go on from.
+        Parameters
+        ----------
+        particles
+            Particles that the material has started, with F at the end of the step.
+        dt
+            Length of the step; it does not matter.
+        F_smoothed
+            F (P,2,2) whose way from F_old gives the strain, None for the new F; the rotation is that of F.
+
+        Raises
+        ------
+        ValueError
+            For particles that the material has not started: there is no F to go on from.
         """
         frame, p = objective(self.rate), particles
         if p.F_old.shape[1:] != (4,) or p.history.shape[1:] != (len(self.memory),):
@@ -61,5 +82,5 @@ class RateMaterial(Material):
 
 @cache
 def objective(name: str) -> type[Rate]:
-    """The plug-in of a rate, looked for once a process. Raises ValueError that lists the rates for another name."""
+    """Plug-in of a rate, looked for once a process. Raises ValueError that lists the rates for another name."""
     return cast("type[Rate]", load(NEGATIVE_CONTROLS if name in available(NEGATIVE_CONTROLS) else RATES, name))

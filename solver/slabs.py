@@ -1,4 +1,4 @@
-"""Which particles stand in which slab of grid columns; sorted anew only when one strays out of its slab's guard."""
+"""Slabs of grid columns and the particles in them, sorted anew only when one strays out of its slab's guard."""
 
 from dataclasses import dataclass, field
 
@@ -6,14 +6,24 @@ import numpy as np
 
 from mpm_verify.solver.state import Grid, Ints, Particles
 
-WIDTH = 8  # columns; leaves a particle with a reach of one column two columns to wander before the next sort
+SLAB_COLUMNS = 8  # leaves a particle with a reach of one column two columns to wander before the next sort
 
 
 @dataclass
 class Slabs:
-    """`start` (S+1,): the particles of slab s are start[s] ... start[s+1]-1; `strayed` (S,): see transfer.p2g."""
+    """Particles by slab: those of slab s are start[s] ... start[s+1]-1.
 
-    slab_columns: int = WIDTH
+    Parameters
+    ----------
+    slab_columns
+        Columns of the grid in a slab.
+    start
+        First particle of each slab, and their number, (S+1,).
+    strayed
+        See transfer.p2g, (S,).
+    """
+
+    slab_columns: int = SLAB_COLUMNS
     start: Ints = field(default_factory=lambda: np.zeros(1, np.int64))
     strayed: Ints = field(default_factory=lambda: np.zeros(0, np.int64))
 

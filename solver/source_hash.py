@@ -1,4 +1,4 @@
-"""Hash of what computes: the syntax trees of a file and of all that it imports, names the kernel cache and the Results.
+"""Source hash: of the syntax trees of a file and of all that it imports; it names the kernel cache and the Results.
 
 The import closure is found in the text, nothing is imported. An import inside a function counts, as what it brings can
 compute; one below TYPE_CHECKING does not. Of `from package import module` the module counts, and the package's own
@@ -40,7 +40,7 @@ def file_hash(file: Path) -> str:
 
 
 def closure(module: str, folder: Path | None = None) -> dict[str, str]:
-    """Hash of the tree of each file in the import closure, by module, names beside `folder` without their package.
+    """Hashes of the trees of all files in an import closure, by module; names beside `folder` are without package.
 
     A module that is not there has an empty closure.
     """
@@ -60,7 +60,7 @@ def closure(module: str, folder: Path | None = None) -> dict[str, str]:
 
 
 def find(module: str, folder: Path | None = None) -> Path | None:
-    """The file of a module of mpm_verify, or of one beside a user's file; None for any other."""
+    """File of a module of mpm_verify, or of one beside a user's file; None for any other."""
     first, *rest = module.split(".")
     if first == PACKAGE:
         path = TOP.joinpath(*rest)
@@ -95,14 +95,14 @@ def _ours(file: Path) -> Tree:
 
 
 def parse(content: bytes) -> Tree:
-    """The tree of a source text. Raises SyntaxError."""
+    """Tree of a source text. Raises SyntaxError."""
     imports: list[tuple[int, str, str | None]] = []
     text = _spelled(ast.parse(content), imports)
     return Tree(hashlib.sha256(text.encode()).hexdigest(), tuple(dict.fromkeys(imports)))
 
 
 def _spelled(node: Any, imports: list[tuple[int, str, str | None]]) -> str:
-    """A syntax tree as text, the same for every version of Python that has the same nodes; notes what is imported."""
+    """Syntax tree as text, the same for every version of Python that has the same nodes; what is imported is noted."""
     if isinstance(node, list):
         return f"[{','.join(_spelled(item, imports) for item in _speaking(node))}]"
     if not isinstance(node, ast.AST):
@@ -118,7 +118,7 @@ def _spelled(node: Any, imports: list[tuple[int, str, str | None]]) -> str:
 
 
 def _speaking(nodes: list[Any]) -> Iterator[Any]:
-    """The statements without bare strings and without what only type checkers see."""
+    """Statements without bare strings and without what only type checkers see."""
     for node in nodes:
         if isinstance(node, ast.If) and _name(node.test) == "TYPE_CHECKING":
             yield from node.orelse

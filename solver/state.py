@@ -15,11 +15,35 @@ PAD = 2  # ghost cells beyond the domain: corners of particle domains reach behi
 
 @dataclass
 class Grid:
-    """Square cells of side `dx` over a rectangle and `PAD` ghost cells around it; node (i, j) has the number i*ny + j.
+    """Square cells over a rectangle, and `PAD` ghost cells around it; node (i, j) has the number i*ny + j.
 
-    `origin` (2,) is the place of node 0, `lower` and `upper` (2,) the corners of the domain without ghost cells.
-    `mass` (n,); `momentum`, `force`, `velocity`, `acceleration` (n, 2) are halves of two (n, 4) arrays, so that a
-    particle reaches both with one cache line.
+    `momentum`, `force`, `velocity` and `acceleration` (n,2) are halves of two (n,4) arrays, so that a particle reaches
+    both with one cache line.
+
+    Parameters
+    ----------
+    dx
+        Side of a cell.
+    lower, upper
+        Corners of the domain without ghost cells, (2,).
+
+    Attributes
+    ----------
+    nx, ny
+        Nodes on x and on y, those of ghost cells included; n = nx ny.
+    origin
+        Position of node 0, (2,).
+    mass
+        Mass of the nodes, (n,).
+    momentum_force
+        Momentum and force that the particles give, (n,4).
+    velocity_acceleration
+        Velocity and acceleration that they take, (n,4).
+
+    Raises
+    ------
+    ValueError
+        Unless a whole number of cells fills the domain.
     """
 
     dx: float
@@ -29,8 +53,8 @@ class Grid:
     ny: int = field(init=False)
     origin: Floats = field(init=False)
     mass: Floats = field(init=False)
-    momentum_force: Floats = field(init=False)  # momentum, force: what the particles give
-    velocity_acceleration: Floats = field(init=False)  # velocity, acceleration: what they take
+    momentum_force: Floats = field(init=False)
+    velocity_acceleration: Floats = field(init=False)
 
     def __post_init__(self) -> None:
         cells = np.rint((self.upper - self.lower) / self.dx).astype(int)
@@ -51,28 +75,50 @@ class Grid:
 
     @cached_property
     def nodes(self) -> Floats:
-        """Places of the nodes, (n, 2); not to be written."""
+        """Positions of the nodes, (n,2); not to be written."""
         i, j = np.divmod(np.arange(self.nx * self.ny), self.ny)
         nodes: Floats = self.origin + self.dx * np.stack([i, j], axis=1)
         nodes.flags.writeable = False
         return nodes
 
     def cell(self, x: Floats) -> Ints:
-        """Cell (column, row) that holds a place, counted from the domain's lower corner; x (..., 2) -> (..., 2)."""
+        """Column and row (..., 2) of the cells of positions x (..., 2), counted from the domain's lower corner."""
         cells: Ints = np.floor((x - self.lower) / self.dx).astype(np.int64)
         return cells
 
 
 @dataclass
 class Particles:
-    """State of P particles. Rows are kept in an order that suits the grid; `id` (P,) is the row in the initial layout.
+    """State of P particles; rows are kept in an order that suits the grid.
 
-    X, x, v, b (P,2): reference place, place, velocity, body force per mass; F (P,2,2); sigma (P,4): Cauchy stress
-    xx, yy, zz, xy, tension positive; m, V0 (P,): mass, initial volume; domain (P,W): what the basis keeps of the
-    particle's domain; carried (P,C): numbers of the caller that travel with their particle; B (P,4 or 0): what a
-    transfer keeps of a particle's velocity besides v; F_old (P,4 or 0), history (P,H), work (P,2 or 0): what a law in
-    rate form keeps, F at the end of the last step, its memory of the path, and work, see solver/objective.py;
-    felt (P,4 or 0): the stress of the internal force where smoothing makes it another one than sigma.
+    Parameters
+    ----------
+    X
+        Reference position, (P,2).
+    m, V0
+        Mass and initial volume, (P,).
+    domain
+        What the basis keeps of the particle's domain, (P,W).
+
+    Attributes
+    ----------
+    x, v, b
+        Position, velocity, body force per mass, (P,2).
+    F
+        Deformation gradient, (P,2,2).
+    sigma
+        Cauchy stress xx, yy, zz, xy, tension positive, (P,4).
+    carried
+        Numbers of the caller that travel with their particle, (P,C).
+    affine_velocity
+        What a transfer keeps of the velocity besides v, (P,4 or 0), see solver/transfers/apic.py.
+    F_old, history, work
+        What a material in rate form keeps: F at the end of the last step (P,4 or 0), its memory of the path (P,H), and
+        work (P,2 or 0), see solver/objective.py.
+    sigma_smoothed
+        Stress of the internal force where smoothing makes it another one than sigma, (P,4 or 0).
+    id
+        Row in the initial layout, (P,).
     """
 
     X: Floats
@@ -105,7 +151,7 @@ class Particles:
 
     @property
     def J(self) -> Floats:
-        """det F (P,)."""
+        """Determinant of F, (P,)."""
         F: Floats = self.F
         return F[:, 0, 0] * F[:, 1, 1] - F[:, 0, 1] * F[:, 1, 0]
 
@@ -115,7 +161,7 @@ class Particles:
             setattr(self, item.name, np.ascontiguousarray(getattr(self, item.name)[order]))
 
     def in_initial_order(self, name: str) -> Any:
-        """The array `name` with its rows as in the initial layout."""
+        """Array `name` with its rows as in the initial layout."""
         found = getattr(self, name)
         array = np.empty_like(found)
         array[self.id] = found

@@ -1,8 +1,7 @@
 """One explicit step, as in the flow chart: particles to grid, equation of motion, grid to particles, stress.
 
-When the stress is updated is the order of the step,
-see solver/stress_update.py; how velocities go between particles and grid
-is a plug-in of solver/transfers. The usual step, FLIP and update-stress-last, is one pass to the grid and one back.
+When the stress is updated, see solver/stress_update.py; how velocities go between particles and grid is a plug-in of
+solver/transfers. The usual step, FLIP and update-stress-last, is one pass to the grid and one back.
 """
 
 from typing import TYPE_CHECKING, cast
@@ -25,15 +24,28 @@ __all__ = ["Load", "Material", "Model", "Observer", "Scheme", "advance", "check_
 
 
 def advance(model: Model, load: Load) -> None:
-    """One step; `load` writes particles.b at the time it is given. Raises RunFailed."""
+    """Advance a model by one step.
+
+    Parameters
+    ----------
+    model
+        Changed in place.
+    load
+        ``load(particles, t)`` writes the body force per mass, particles.b (P,2), at the time t of the step's start.
+
+    Raises
+    ------
+    RunFailed
+        Where a particle is inverted, leaves the grid or is not finite: the run cannot go on.
+    """
     load(model.particles, model.time)
-    ORDERS[model.scheme.stress](model)
+    STRESS_UPDATES[model.scheme.stress](model)
     model.steps += 1
     model.tell("after_step")
 
 
 def stress_last(model: Model) -> None:
-    """v, x and F in one pass over the particles."""
+    """Step with update-stress-last: v, x and F in one pass over the particles, then sigma."""
     particles_to_grid(model)
     equation_of_motion(model)
     x = model.particles.x.copy() if model.smoothing else model.particles.x
@@ -42,7 +54,7 @@ def stress_last(model: Model) -> None:
 
 
 def stress_modified_last(model: Model) -> None:
-    """v, then F from the velocities that it gives at the nodes, with the weights of the step's start."""
+    """Step with modified update-stress-last: v, then F from the nodes' velocities that v gives, by the old weights."""
     from mpm_verify.solver.transfers._passes import advect, spread, walled
 
     particles_to_grid(model)
@@ -54,12 +66,12 @@ def stress_modified_last(model: Model) -> None:
     model.scheme.transfer.filter(model, mapped)
     advect(model, model.grid.velocity_acceleration, mapped, model.scheme.half(model.dt))
     model.basis.convect(model.particles, model.grid, model.dt)
-    refuse_inverted(model)
+    fail_if_inverted(model)
     update_stress(model, x)
 
 
 def stress_first(model: Model) -> None:
-    """F and sigma; then all of them to the grid, v and x. Weights follow F, so those of the forces know it."""
+    """Step with update-stress-first: F and sigma, then the forces, v and x. Weights of the forces know the new F."""
     from mpm_verify.solver.transfers._passes import advect, walled
 
     rest = np.zeros_like(model.grid.velocity_acceleration)
@@ -68,21 +80,21 @@ def stress_first(model: Model) -> None:
     before = walled(model, model.grid.momentum_force, before=True)
     model.scheme.transfer.filter(model, before)
     advect(model, rest, before, model.scheme.half(model.dt))
-    refuse_inverted(model)
+    fail_if_inverted(model)
     update_stress(model, model.particles.x)
     particles_to_grid(model)
     equation_of_motion(model)
     new_velocities(model)
     advect(model, model.grid.velocity_acceleration, rest, model.scheme.half(model.dt))
     model.basis.convect(model.particles, model.grid, model.dt)
-    refuse_inverted(model)
+    fail_if_inverted(model)
 
 
-ORDERS = {"usl": stress_last, "musl": stress_modified_last, "usf": stress_first}
+STRESS_UPDATES = {"usl": stress_last, "musl": stress_modified_last, "usf": stress_first}
 
 
 def particles_to_grid(model: Model) -> None:
-    """Mass, momentum and force at the nodes; particles that strayed are sorted anew, slabs too narrow are widened."""
+    """Write mass, momentum and force at the nodes; sort particles that strayed, widen slabs that are too narrow."""
     g, p, s = model.grid, model.particles, model.slabs
     if model.smoothing:
         model.smoothing.stress(model)
@@ -96,7 +108,7 @@ def particles_to_grid(model: Model) -> None:
         if (s.strayed < 0).all():
             model.scheme.transfer.give(model, g.momentum_force)
             return
-        refuse_outside(model, s.strayed[s.strayed >= 0])
+        fail_if_outside(model, s.strayed[s.strayed >= 0])
         s.slab_columns *= 2 if attempt else 1
         s.sort(g, p)
     raise RunFailed(FailureKind.SLAB, model.steps)
@@ -113,7 +125,7 @@ def update_stress(model: Model, x: Floats) -> None:
 
 
 def equation_of_motion(model: Model) -> None:
-    """Velocities and accelerations at the nodes, and what the transfer makes of them."""
+    """Write velocities and accelerations at the nodes, and what the transfer makes of them."""
     g, w = model.grid, model.walls
     w.move(g, model.time, model.dt)
     model.tell("before_forces")
@@ -137,41 +149,42 @@ def equation_of_motion(model: Model) -> None:
 
 
 def grid_to_particles(model: Model) -> None:
-    """v, x and F at the end of the step."""
+    """Write v, x and F at the end of the step."""
     g, p = model.grid, model.particles
     g2p(
         model.basis.fill, model.basis.support, model.basis.domain_size, p.x, p.v, p.F, p.domain.ravel(), g.origin,
         1.0 / g.dx,
-        g.nx, g.ny, g.velocity_acceleration, model.dt, model.scheme.half(model.dt), model.scheme.transfer.share,
+        g.nx, g.ny, g.velocity_acceleration, model.dt, model.scheme.half(model.dt), model.scheme.transfer.flip_fraction,
         model.inverted,
         model.cell_crossings,
     )  # fmt: skip
     model.tell("after_particles")
     model.basis.convect(p, g, model.dt)
-    refuse_inverted(model)
+    fail_if_inverted(model)
 
 
 def new_velocities(model: Model) -> None:
-    """v alone at the end of the step."""
+    """Write v alone at the end of the step."""
     from mpm_verify.solver.transfers._passes import collect
 
-    p, share, taken = model.particles, model.scheme.transfer.share, collect(model, model.grid.velocity_acceleration)
-    p.v[:] = share * (p.v + model.dt * taken[:, 2:]) + (1.0 - share) * taken[:, :2]
+    p, flip = model.particles, model.scheme.transfer.flip_fraction
+    taken = collect(model, model.grid.velocity_acceleration)
+    p.v[:] = flip * (p.v + model.dt * taken[:, 2:]) + (1.0 - flip) * taken[:, :2]
     model.tell("after_particles")
 
 
-def refuse_inverted(model: Model) -> None:
+def fail_if_inverted(model: Model) -> None:
     """Raise RunFailed for the first particle that the last pass has found inverted."""
     if (model.inverted >= 0).any():
         lo = int(model.inverted[model.inverted >= 0][0])
         F = model.particles.F[lo : lo + BLOCK]
-        with np.errstate(all="ignore"):  # by the kernel's formula: det() rounds in another way
+        with np.errstate(all="ignore"):  # the kernel's formula: det() rounds in another way
             J = F[:, 0, 0] * F[:, 1, 1] - F[:, 0, 1] * F[:, 1, 0]
         fail(model, lo + int(np.flatnonzero(~((J > 0) & (J < np.inf)))[0]), FailureKind.INVERTED)
 
 
-def refuse_outside(model: Model, blocks: Ints) -> None:
-    """Raise RunFailed for the first particle of the blocks that start at `blocks` which reaches out of the grid."""
+def fail_if_outside(model: Model, blocks: Ints) -> None:
+    """Raise RunFailed for the first particle of the blocks that start at `blocks` which has left the grid."""
     g, p = model.grid, model.particles
     table, node = np.empty(3 * model.basis.support * BLOCK), np.empty(model.basis.support * BLOCK, np.int64)
     for lo in blocks:
@@ -179,4 +192,4 @@ def refuse_outside(model: Model, blocks: Ints) -> None:
             arrays = (p.x[i], p.F[i].ravel(), p.domain[i])
             box = (0.0, g.nx - 1.0, 0.0, g.ny - 1.0)
             if not model.basis.fill(*arrays, *g.origin, 1.0 / g.dx, g.nx, g.ny, *box, table, node):
-                fail(model, i, *model.basis.refusal(p.F[i], p.domain[i], g.dx))
+                fail(model, i, *model.basis.fault(p.F[i], p.domain[i], g.dx))

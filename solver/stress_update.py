@@ -1,17 +1,17 @@
-"""When a step updates the stress: the words, without what computes, for commands that only check them.
+"""Stress update of a step: the words, without what computes, for commands that only check them.
 
-Velocities at the nodes are v_i before the step (n-1/2) and after it (n+1/2):
+Velocities at the nodes have the time levels n-1/2 before the step and n+1/2 after it:
 
-    usl   update-stress-last: F and sigma from v_i after the step, which the particles take in the same pass
+    usl   update-stress-last: F and sigma from the velocities after the step, which the particles take in the same pass
     musl  modified update-stress-last: the particles' new velocities are mapped to the nodes again, F comes from those
-    usf   update-stress-first: F and sigma from v_i before the step, ahead of the forces
+    usf   update-stress-first: F and sigma from the velocities before the step, ahead of the forces
 
-Places, and corners of domains, move with v_i after the step in all three. In time, usl and musl have a first-order
+Positions, and corners of domains, move with those after the step in all three. In time, usl and musl have a first-order
 error in the start, which a staggered one takes away. In usf the first stress is that of t = dt, and later a gradient
 taken at x^n multiplies F^(n-1), so it is of first order with either start. Energy: usl damps short waves, the more the
 longer the step; musl and usf conserve it, with FLIP, and so keep the noise of cell crossings too.
-Source: Bardenhagen, J. Comput. Phys. 180 (2002) 383; usl and musl: Sulsky, Zhou & Schreyer, Comput. Phys. Commun. 87
-(1995) 236.
+Source: Bardenhagen 2002, doi:10.1006/jcph.2002.7103; usl and musl: Sulsky, Zhou & Schreyer 1995,
+doi:10.1016/0010-4655(94)00170-7.
 """
 
 from typing import Literal, get_args
@@ -20,6 +20,6 @@ Stress = Literal["usl", "musl", "usf"]
 
 
 def check_stress_update(word: str) -> None:
-    """Raise ValueError for a word that is no order."""
+    """Raise ValueError for a word that is no stress update."""
     if word not in get_args(Stress):
         raise ValueError(f"no stress update {word!r}; choose from {', '.join(get_args(Stress))}")

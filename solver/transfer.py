@@ -1,9 +1,9 @@
 """Particles to grid and back. Reads the weights table and knows no basis; compiled once, called with any fill.
 
-Particles are sorted into slabs of `slab_columns` grid columns. Slabs of one colour (even,
-then odd) are worked on at the same
-time and never touch the same node: the box given to a fill is the slab and a guard of (width - 1) // 2 columns. So
-there are no atomics and no copies, and each node's sum has one order: the same bits for any number of threads.
+Particles are sorted into slabs of `slab_columns` grid columns. Slabs of one colour (even, then odd) are worked on at
+the same time and never touch the same node: the box given to a fill is the slab and a guard of (slab_columns - 1) // 2
+columns. So there are no atomics and no copies, and each node's sum has one order: the same bits for any number of
+threads.
 
 The parallel kernels are thin, and call one that is compiled apart: what stands inside a prange takes longer to compile.
 """
@@ -20,7 +20,7 @@ CHUNK = 128 * BLOCK  # particles a thread takes at a time on the way back
 
 @kernel(inline=True)
 def scatter(K, lo, hi, v, F, sigma, m, V0, b, table, node, mass, momentum_force):
-    """Mass, momentum and force of particles lo ... hi-1 to their nodes: f_i = -V sigma dN_i + m b N_i, V = J V0."""
+    """Add mass, momentum and force of particles lo ... hi-1 at their nodes: f_i = -V sigma dN_i + m b N_i, V = J V0."""
     dNx = np.uint64(K * BLOCK)
     dNy = np.uint64(2 * K * BLOCK)
     for q in range(np.uint64(hi - lo)):
@@ -55,7 +55,7 @@ def scatter(K, lo, hi, v, F, sigma, m, V0, b, table, node, mass, momentum_force)
 def p2g_slab(
     fill, K, W, start, end, x, v, F, sigma, m, V0, b, domain, origin, inv_dx, nx, ny, left, right, mass, momentum_force
 ):  # fmt: skip
-    """The particles start ... end-1; -1, or the first particle of the block that reaches out of the box."""
+    """Scatter the particles start ... end-1; -1, or the first particle of the block that reaches out of the box."""
     xs = x.reshape(-1)
     Fs = F.reshape(-1)
     table = np.empty(3 * K * BLOCK)
@@ -94,7 +94,7 @@ def p2g(
     momentum_force,
     strayed,
 ):
-    """Sums of all particles on the grid; `domain` is flat, W numbers a particle.
+    """Sum mass (n,), momentum and force (n,4) of all particles at the nodes; `domain` is flat, W numbers a particle.
 
     `start` (S+1,) bounds the particles of each slab. `strayed` (S,) is -1, or the first particle of a block that
     reaches out of its slab's box; the sums are then incomplete and not to be used.
@@ -116,7 +116,7 @@ def p2g(
 
 @kernel(inline=True)
 def deform(p, F, Lxx, Lxy, Lyx, Lyy, dt, half):
-    """F of particle p at the end of the step: F + dt L (F + half L F), see Scheme.deformation."""
+    """Write F of particle p at the end of the step: F + dt L (F + half L F), see Scheme.half."""
     Fxx = F[p, 0, 0]
     Fxy = F[p, 0, 1]
     Fyx = F[p, 1, 0]
@@ -133,7 +133,7 @@ def deform(p, F, Lxx, Lxy, Lyx, Lyy, dt, half):
 
 @kernel(inline=True)
 def gather(K, lo, hi, x, v, F, velocity_acceleration, dt, half, flip, table, node):
-    """New velocity, place and F of particles lo ... hi-1."""
+    """Write velocity, position and F of particles lo ... hi-1 at the end of the step."""
     dNx = np.uint64(K * BLOCK)
     dNy = np.uint64(2 * K * BLOCK)
     for q in range(np.uint64(hi - lo)):
@@ -165,7 +165,7 @@ def gather(K, lo, hi, x, v, F, velocity_acceleration, dt, half, flip, table, nod
 
 @kernel(flag(F1))
 def invertible(F):
-    """Whether 0 < det F < infinity for a block of particles, flat. In a loop of its own: in gather it costs a fifth."""
+    """Whether 0 < det F < infinity for a block of particles, flat; in a loop of its own: in gather it costs a fifth."""
     bad = 0
     for b in range(F.shape[0] // 4):
         J = F[4 * b] * F[4 * b + 3] - F[4 * b + 1] * F[4 * b + 2]
@@ -175,7 +175,7 @@ def invertible(F):
 
 @kernel(inline=True)
 def cells_of(x, ox, oy, inv_dx, cells):
-    """Cell numbers of a block, x flat: columns, then rows."""
+    """Write the cell numbers of a block, x flat: columns, then rows."""
     for b in range(x.shape[0] // 2):
         cells[b] = np.floor((x[2 * b] - ox) * inv_dx)
         cells[BLOCK + b] = np.floor((x[2 * b + 1] - oy) * inv_dx)
@@ -202,9 +202,9 @@ def g2p_chunk(
     flip,
     cell_crossings,
 ):
-    """The particles start ... end-1; -1, or the first particle of the first block in which one has lost its det F.
+    """Gather the particles start ... end-1; -1, or the first particle of the first block in which one is inverted.
 
-    Adds to crossed (1,) the faces of cells that they passed.
+    Adds to `cell_crossings` (1,) the faces of cells that they passed.
     """
     xs = x.reshape(-1)
     Fs = F.reshape(-1)
@@ -235,11 +235,10 @@ def g2p_chunk(
 def g2p(
     fill, K, W, x, v, F, domain, origin, inv_dx, nx, ny, velocity_acceleration, dt, half, flip, inverted, cell_crossings
 ):
-    """FLIP velocity with a share (1 - flip) of PIC, place, and F of all particles.
+    """Write velocity, a fraction `flip` of FLIP and the rest PIC, position and F of all particles.
 
-    `inverted` (chunks,) is -1,
-    or the first particle of a block in which one has lost its det F; `cell_crossings` (chunks,) counts
-    on: the faces of cells that particles passed.
+    `inverted` (chunks,) is -1, or the first particle of a block in which one is inverted; `cell_crossings` (chunks,)
+    counts on: the faces of cells that particles passed.
     """
     for c in prange(inverted.shape[0]):
         start = c * CHUNK

@@ -1,8 +1,8 @@
-"""The contract between bases and transfers: one table of weights for a block of particles, one signature to fill it.
+"""Contract between bases and transfers: one table of weights for a block of particles, one signature to fill it.
 
-The table of a basis with K neighbours a particle, for a block of BLOCK particles, is two flat arrays:
+The table of a basis with K support nodes a particle, for a block of BLOCK particles, is two flat arrays:
 
-    node[k*B + b]              neighbour k of particle b, an index of grid arrays
+    node[k*B + b]              support node k of particle b, an index of grid arrays
     table[k*B + b]             N, its shape value
     table[(K + k)*B + b]       dN/dx
     table[(2*K + k)*B + b]     dN/dy
@@ -12,9 +12,9 @@ numbers that the basis keeps of each particle's domain. Both layouts are there f
 between the streams, and as few arrays as this, it works on eight particles at once (five times faster than a table
 [b, k]). So, in a fill: no branch, no division but the one needed, floor() for the cell.
 
-A fill returns False, and its table is not used, if a neighbour lies outside `box` = (x0, x1, y0, y1), in cells from the
-grid's origin. Comparisons are written so that a NaN lies outside. The walls of the grid stand PAD cells inside its nx
-by ny nodes.
+A fill returns False, and its table is not used, if a support node lies outside `box` = (x0, x1, y0, y1), in cells from
+the grid's origin. Comparisons are written so that a NaN lies outside. The walls of the grid stand PAD cells inside its
+nx by ny nodes.
 """
 
 from collections.abc import Callable
@@ -34,43 +34,100 @@ from mpm_verify.solver.state import Floats, Grid, Particles
 #         x   F  domain ox  oy 1/dx nx  ny  x0  x1  y0  y1 table node
 FILL = flag(F1, F1, F1, f8, f8, f8, i8, i8, f8, f8, f8, f8, F1, I1)
 Fill = function_type(FILL)
-Refusal = tuple[FailureKind, dict[str, float]]  # and its numbers, see Failure
-Place = Callable[[Floats], Floats]
+Fault = tuple[FailureKind, dict[str, float]]  # kind and numbers, see Failure
+Position = Callable[[Floats], Floats]  # from reference positions (n,2) to positions (n,2)
 
 
 @dataclass(frozen=True)
 class Basis:
-    """A basis is data plus one kernel; its file in solver/basis is its name. This one knows points alone."""
+    """Weights of particles at nodes: data plus one kernel; the file in solver/basis is the name. This one knows points.
 
-    support: ClassVar[int]  # K
-    order: ClassVar[float]  # of the displacement while no particle crosses a cell; source in the docstring
-    fill: ClassVar[Callable[..., bool]]  # a kernel of signature FILL
-    domain_size: ClassVar[int] = 0  # W
-    gradients_jump: ClassVar[bool] = False  # those of weights, where a particle crosses a cell
-    has_limit: ClassVar[bool] = False  # of the half diagonals of domains
-    limit = inf  # that limit, in cells
+    Attributes
+    ----------
+    support
+        Support nodes K of a particle.
+    order
+        Order of the displacement in dx while no particle crosses a cell; its source is in the module's docstring.
+    fill
+        Kernel of signature FILL.
+    domain_size
+        Numbers W that are kept of each particle's domain.
+    gradients_jump
+        Whether gradients of weights jump where a particle crosses a cell.
+    has_limit
+        Whether half diagonals of domains can have a limit.
+    limit
+        That limit, in cells.
+    """
 
-    def domain(self, layout: Layout, place: Place) -> Floats:
-        """What the basis keeps of the domains, (P,W); `place` takes reference places (n,2) to those at the start."""
+    support: ClassVar[int]
+    order: ClassVar[float]
+    fill: ClassVar[Callable[..., bool]]
+    domain_size: ClassVar[int] = 0
+    gradients_jump: ClassVar[bool] = False
+    has_limit: ClassVar[bool] = False
+    limit = inf
+
+    def domain(self, layout: Layout, position: Position) -> Floats:
+        """Numbers (P,W) that the basis keeps of the domains; `position` takes reference positions to the start."""
         return np.zeros((len(layout), 0))
 
-    def populate(self, layout: Layout, rho0: float, place: Place = lambda X: X) -> Particles:
-        """Particles at the places of the layout, and their domains where `place` takes them."""
-        return Particles(layout.X, rho0 * layout.V0, layout.V0, self.domain(layout, place))
+    def populate(self, layout: Layout, rho0: float, position: Position = lambda X: X) -> Particles:
+        """Make particles at the reference positions of a layout.
+
+        Parameters
+        ----------
+        layout
+            Reference positions and domains of P particles.
+        rho0
+            Density at reference.
+        position
+            From reference positions (n,2) to those at the start (n,2): for domains with corners of their own.
+
+        Returns
+        -------
+        Particles
+            At rest and undeformed, x = X.
+        """
+        return Particles(layout.X, rho0 * layout.V0, layout.V0, self.domain(layout, position))
 
     @classmethod
     def promises(cls, crossing: bool) -> Promise:
-        """Promise of a body between walls, with particles that cross cells or with none; by default it is the same."""
+        """How the error of a body between walls falls on refinement.
+
+        Parameters
+        ----------
+        crossing
+            Whether particles cross cells; by default that changes nothing.
+
+        Returns
+        -------
+        Promise
+            Judged against the observed order.
+        """
         return Promise(cls.order)
 
     @staticmethod
     def corners(x: Floats, F: Floats, domain: Floats, dx: float) -> Floats | None:
-        """Corners (P,4,2) of particles with these arrays, in the order of solver.layout.SIDES; None for points."""
+        """Corners of the domains of particles.
+
+        Parameters
+        ----------
+        x, F, domain
+            Arrays of P particles, (P,2), (P,2,2), (P,W).
+        dx
+            Side of a cell.
+
+        Returns
+        -------
+        ndarray or None
+            Corners (P,4,2) in the order of solver.layout.SIDES; None for points.
+        """
         return None
 
     @staticmethod
-    def refusal(F: Floats, domain: Floats, dx: float) -> Refusal:
-        """Why the fill refuses a particle on the whole grid, and numbers; F (2,2) and domain (W,) are its own."""
+    def fault(F: Floats, domain: Floats, dx: float) -> Fault:
+        """Why the fill returns False for a particle with F (2,2) and domain (W,) on the whole grid, and numbers."""
         return FailureKind.OUTSIDE_GRID, {}
 
     @staticmethod
@@ -79,17 +136,17 @@ class Basis:
         return np.zeros(len(F), dtype=bool)
 
     def limited(self, limit: float) -> "Basis":
-        """The basis with half diagonals of domains no longer than `limit`, in cells, unless it has a limit."""
+        """Basis with half diagonals of domains no longer than `limit`, in cells; itself if it has one or knows none."""
         return self
 
     @staticmethod
     def convect(particles: Particles, grid: Grid, dt: float) -> None:
-        """Move what follows the grid's velocity without F."""
+        """Move what follows the grid's velocity without F, by a step of length dt."""
 
 
 @kernel(inline=True)
 def bilinear(k, K, b, x, y, weight, gx, gy, ny, table, node):
-    """Four nodes k ... k+3 around the point (x, y), in cells: hat function S times weight, and S times (gx, gy)."""
+    """Write four nodes k ... k+3 around the point (x, y), in cells: hat function S times weight, and S (gx, gy)."""
     i = np.floor(x)
     j = np.floor(y)
     right = x - i
@@ -105,7 +162,7 @@ def bilinear(k, K, b, x, y, weight, gx, gy, ny, table, node):
 
 @kernel(inline=True)
 def entry(k, K, b, number, S, weight, gx, gy, table, node):
-    """One row of the table."""
+    """Write one row of the table."""
     node[k * BLOCK + b] = number
     table[k * BLOCK + b] = weight * S
     table[(K + k) * BLOCK + b] = gx * S
@@ -114,5 +171,5 @@ def entry(k, K, b, number, S, weight, gx, gy, table, node):
 
 @kernel(inline=True)
 def outside(x0, x1, y0, y1, left, right, below, above):
-    """How many of the four sides of the box are passed; a NaN passes each."""
+    """Number of the four sides of the box that are passed; a NaN passes each."""
     return int(not (left >= x0)) + int(not (right < x1)) + int(not (below >= y0)) + int(not (above < y1))

@@ -4,7 +4,7 @@ import sympy as sp
 
 
 def displacement(X, t, A=0.05):
-    """u of the reference place X and the time t, two expressions."""
+    """u of the reference position X and the time t, two expressions."""
     x, y = X
     wave = sp.sin(sp.pi * y) * (1 - sp.cos(100 * sp.pi * t))
     return sp.Matrix([A * sp.sin(sp.pi * x) ** 2 * wave, A * wave])

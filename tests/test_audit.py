@@ -239,7 +239,7 @@ def test_command_as_json(monkeypatch: pytest.MonkeyPatch, capsys: pytest.Capture
     document = json.loads(out)
     assert code == 0
     assert document["material"] == "neo_hookean:nu=0.2"
-    assert len(document["spots"]) == len(RULES) + len(ALWAYS)
+    assert len(document["blind_spots"]) == len(RULES) + len(ALWAYS)
     ours = asdict(case("clamped_shear").audit)["numbers"]
     assert document["numbers"]["strain"] == ours["strain"]
     assert document["numbers"]["stress"] != ours["stress"]  # another material

@@ -13,7 +13,7 @@ import pandas as pd
 import pytest
 from jsonschema import Draft202012Validator
 
-from mpm_verify.cases.harness.axes import UNDONE, crossed, level, middle, particle_axes, position_axes, time_axes
+from mpm_verify.cases.harness.axes import UNDONE, cell_crossings, level, middle, particle_axes, position_axes, time_axes
 from mpm_verify.cases.harness.build import Asked, named
 from mpm_verify.cases.harness.refinement import MOST, collect, offsets
 from mpm_verify.cases.harness.runner import InProcess, pending, run_study
@@ -128,14 +128,14 @@ def test_time_axis_of_an_error_of_space_and_one_of_time() -> None:
     runs = tuple(replace(BASE, courant=c) for c in (0.1, 0.4, 0.2, 0.05))
     (axis,) = time_axes(runs, results(runs, lambda run: 1e-3 + 0.1 * run.courant**2))
     assert axis.courants == (0.4, 0.2, 0.1, 0.05)
-    assert axis.shares[0] == pytest.approx((0.016 - 0.00025) / 0.017)
-    assert axis.shares[-1] == 0
-    assert all(a > b for a, b in zip(axis.shares, axis.shares[1:], strict=False))
+    assert axis.fractions[0] == pytest.approx((0.016 - 0.00025) / 0.017)
+    assert axis.fractions[-1] == 0
+    assert all(a > b for a, b in zip(axis.fractions, axis.fractions[1:], strict=False))
     assert axis.orders[0] == pytest.approx(log(0.017 / 0.005) / log(2))
     (pure,) = time_axes(runs, results(runs, lambda run: 0.1 * run.courant**2))
     assert pure.orders == pytest.approx([2, 2, 2])
     (flat,) = time_axes(runs, results(runs, lambda run: 1e-3))
-    assert (flat.orders, flat.shares) == ((0, 0, 0), (0, 0, 0, 0))
+    assert (flat.orders, flat.fractions) == ((0, 0, 0), (0, 0, 0, 0))
 
 
 def test_time_axis_is_of_the_finest_cells_and_of_finished_runs() -> None:
@@ -161,7 +161,7 @@ def test_an_error_of_zero_has_no_order() -> None:
     runs = tuple(replace(BASE, ppc=ppc, courant=c) for ppc, c in ((1, 0.4), (4, 0.4), (4, 0.2)))
     known = results(runs, lambda run: 0.0)
     assert particle_axes(runs, known)[0].orders == (None,)
-    assert (time_axes(runs, known)[0].orders, time_axes(runs, known)[0].shares) == ((None,), (0.0, 0.0))
+    assert (time_axes(runs, known)[0].orders, time_axes(runs, known)[0].fractions) == ((None,), (0.0, 0.0))
 
 
 SCATTER = (1.0, 0.97, 1.03, 1.01)
@@ -226,8 +226,8 @@ def test_a_level_without_one_of_its_replicates() -> None:
 
 
 def test_crossings_are_per_particle() -> None:
-    assert crossed(None) is None
-    assert crossed(replace(result(BASE, 1.0), crossings=640, particles=256)) == 2.5
+    assert cell_crossings(None) is None
+    assert cell_crossings(replace(result(BASE, 1.0), crossings=640, particles=256)) == 2.5
 
 
 # ---- real runs
@@ -303,7 +303,7 @@ def test_tables_hold_the_numbers_of_the_axes(tmp_path: Path) -> None:
     times = tables["time_step"].query("quantity == 'u' and norm == 'rms'")
     assert list(times.courant) == [0.4, 0.2, 0.1]
     assert list(times.order)[1:] == pytest.approx([1, 1])
-    assert list(times.share_of_time_step) == pytest.approx([0.75, 0.5, 0])
+    assert list(times.fraction_of_time_step) == pytest.approx([0.75, 0.5, 0])
     counts = tables["particles_per_cell"].query("quantity == 'F' and norm == 'max'")
     assert list(counts.ppc) == [4, 9]
     assert list(counts.order_in_spacing)[1] == pytest.approx(2, abs=0.02)

@@ -193,7 +193,7 @@ def test_examinations(browser: webdriver.Chrome, examined: tuple[Path, int], wid
     page, images = examined
     assert look(browser, page, width) == {}
     assert browser.execute_script("return document.images.length") == images
-    assert "What missed" in browser.page_source
+    assert "Checks that did not pass" in browser.page_source
     assert width > 700 or browser.execute_script(SMALLEST) > 0.8
 
 

@@ -167,7 +167,7 @@ def test_a_missing_file_is_named(name: str, tmp_path: Path) -> None:
     store = Store(tmp_path, "element")
     if name == "study.json":
         (tmp_path / name).unlink()
-        with pytest.raises(StoreError, match=r"is no study folder: it holds no study\.json"):
+        with pytest.raises(StoreError, match=r"is not a study folder: it has no study\.json"):
             store.study()
         return
     (tmp_path / "runs" / f"{run.digest}.{name}").unlink()
@@ -256,11 +256,11 @@ def test_what_is_wrong_with_the_input_is_one_line(tmp_path: Path) -> None:
 
 def test_the_page_names_what_missed_first(tmp_path: Path) -> None:
     page = drawn(tmp_path, GOOD, BAD, LOST)
-    assert page.index("What missed") < page.index("The turn")
-    assert "Errors are against: a sieve &lt;&amp;&gt;." in page
+    assert page.index("Checks that did not pass") < page.index("The turn")
+    assert "The errors are against the exact curve: a sieve &lt;&amp;&gt;." in page
     assert "500000 (paper)" in page
     assert '<span class="badge FAIL">' in page
-    assert "What missed" not in drawn(tmp_path, GOOD)
+    assert "Checks that did not pass" not in drawn(tmp_path, GOOD)
 
 
 def test_words_of_a_check() -> None:
@@ -307,7 +307,8 @@ def test_the_document_has_what_came_out(tmp_path: Path, monkeypatch: pytest.Monk
     told = json.loads(document(record, tmp_path, more_of(record)))["more"]["soil"]
     assert told["parameters"] == {"E [Pa]": "500000 (paper)", "rate": "jaumann"}
     assert told["findings"][0] == {"code": "objectivity.missed", "numbers": {"missed": 2, "checks": 30}, "group": ""}
-    assert told["lead"] == "2 of 30 checks did not pass; they stand first. Errors are against: a sieve <&>."
+    against = "The errors are against the exact curve: a sieve <&>."
+    assert told["lead"] == f"2 of 30 checks did not pass; they stand first. {against}"
 
 
 def test_notes_are_those_of_a_group() -> None:

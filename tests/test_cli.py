@@ -120,12 +120,12 @@ BAD = {
     "replicates no number": (["--replicates", "some"], ["--replicates", "integer"]),
     "courant no number": (["--courant", "fast"], ["--courant", "number"]),
     "unknown transfer": (["--transfer", "nope"], ["'nope'", "apic, flip, fmpm, pic"]),
-    "share of flip 2": (["--transfer", "flip:share=2"], ["share = 2", "above 0", "up to 1"]),
-    "share of flip 0": (["--transfer", "flip:share=0"], ["share = 0", "pic"]),
-    "share of flip nan": (["--transfer", "flip:share=nan"], ["share=nan", "finite number"]),
+    "fraction of flip 2": (["--transfer", "flip:fraction=2"], ["fraction = 2", "above 0", "up to 1"]),
+    "fraction of flip 0": (["--transfer", "flip:fraction=0"], ["fraction = 0", "pic"]),
+    "fraction of flip nan": (["--transfer", "flip:fraction=nan"], ["fraction=nan", "finite number"]),
     "order of fmpm 0": (["--transfer", "fmpm:order=0"], ["order = 0", "whole number from 1"]),
     "order of fmpm 2.5": (["--transfer", "fmpm:order=2.5"], ["order = 2.5", "whole number from 1"]),
-    "unknown parameter of a transfer": (["--transfer", "pic:share=1"], ["'share'", "none"]),
+    "unknown parameter of a transfer": (["--transfer", "flip:share=0.9"], ["'share'", "fraction"]),
     "unknown stress order": (["--stress", "first"], ["'first'", "usl, musl, usf"]),
     "jobs 0": (["--jobs", "0"], ["--jobs", NUMBERS, "from 1"]),
     "jobs negative": (["--jobs", "-1"], ["--jobs", NUMBERS, "from 1"]),
@@ -241,14 +241,22 @@ def test_report_of_a_broken_result(verify: Verify, stored: Path, text: str, said
     assert content(stored) == before
 
 
-def test_report_with_missing_arrays(verify: Verify, stored: Path) -> None:
+def test_report_with_missing_arrays(verify: Verify, tmp_path: Path) -> None:
+    """They cost figures alone: verdicts and tables stand in the Results."""
+    stored = fixtures.make(tmp_path / "stored", ("cpdi",), largest=16)
+    with fixtures.sources():
+        assert verify("report", str(stored)).code == 0
+    whole = {file.name for file in (stored / "figures").iterdir()}
+    before = (stored / "tables" / "verdicts.csv").read_bytes()
     for file in (stored / "runs").glob("*.npz"):
         file.unlink()
-    before = content(stored / "runs")
+    results = content(stored / "runs")
     with fixtures.sources():
-        line = verify("report", str(stored)).line
-    assert "delete it and its .json file to run that run again" in line
-    assert content(stored / "runs") == before
+        assert verify("report", str(stored)).code == 0
+    assert content(stored / "runs") == results
+    assert (stored / "tables" / "verdicts.csv").read_bytes() == before
+    left = {file.name for file in (stored / "figures").iterdir()}
+    assert whole - left == {f"error_field_cpdi.{kind}" for kind in ("svg", "pdf", "png")}
 
 
 def test_not_enough_memory(verify: Verify, quickly: None, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -244,8 +244,8 @@ def test_measures_of_known_shapes() -> None:
 @pytest.mark.parametrize(
     ("change", "says"),
     [
-        ({"ppc": 3}, "no square number"),
-        ({"cells": 1}, "must be 2 or more"),
+        ({"ppc": 3}, "not a square number"),
+        ({"cells": 1}, "choose whole numbers from 2 to"),
         ({"cells": 2000}, "at most 1000"),
         ({"channel": 7.3}, "must make whole cells"),
         ({"g": 1e300}, "must be at most"),

@@ -192,8 +192,8 @@ def test_a_failed_run_is_a_result(verify: Any, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "says"),
     [
-        (["column", "--cells", "1"], "cells = 1 of the width must be 2 or more"),
-        (["column", "--ppc", "3"], "3 particles per cell is no square number"),
+        (["column", "--cells", "1"], "cells = 1 cannot be run; choose whole numbers from 2"),
+        (["column", "--ppc", "3"], "3 particles per cell is not a square number"),
         (["column", "--material", "clay"], "no material 'clay'; choose from"),
         (["column", "--material", "neo_hookean"], "must have a material in rate form"),
         (["column", "--start", "wet"], "start = 'wet'"),

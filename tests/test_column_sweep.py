@@ -1,6 +1,5 @@
 """Studies from TOML: what ships reads, a product is a product, and what is wrong is one line."""
 
-import re
 from math import inf
 from pathlib import Path
 
@@ -9,7 +8,6 @@ import pytest
 from mpm_verify.cases.column.run import ColumnRun
 from mpm_verify.cases.harness.shipped import shipped
 from mpm_verify.cases.harness.study_file import read
-from mpm_verify.solver.source_hash import TOP
 
 FIGURES = {f"figure{number}" for number in range(3, 9)}
 
@@ -50,13 +48,6 @@ def test_a_product_without_doubles(tmp_path: Path) -> None:
     assert (study.name, study.title, study.axes, study.finish) == ("own", "own", ("cells", "offset"), 4)
 
 
-def test_the_study_in_readme(tmp_path: Path) -> None:
-    (text,) = re.findall(r"```toml\n(.*?)```", (TOP.parent / "README.md").read_text(), re.DOTALL)
-    study = read(own(tmp_path, text), "")
-    assert len(study.runs) == 6
-    assert {run.material for run in study.runs} == {"mohr_coulomb:phi=33"}
-
-
 @pytest.mark.parametrize(
     ("text", "says"),
     [
@@ -71,7 +62,7 @@ def test_the_study_in_readme(tmp_path: Path) -> None:
         ("[sweep]\nppc = 4", "ppc in .sweep. must be a list of one value or more, not 4"),
         ("[sweep]\nppc = []", "must be a list of one value or more"),
         ("[run]\nppc = 4\n[sweep]\nppc = [4, 9]", "must stand in .run. or in .sweep., not in both"),
-        ("[sweep]\nppc = [4, 3]", "3 particles per cell is no square number"),
+        ("[sweep]\nppc = [4, 3]", "3 particles per cell is not a square number"),
         ("[run]\nppc = 'four'", "ppc = 'four': input should be a valid integer"),
         ("[run]\ncells = '4'", "cells = '4': input should be a valid integer"),
         ("[run]\ncells = true", "cells = True: input should be a valid integer"),

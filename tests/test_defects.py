@@ -17,7 +17,7 @@ from mpm_verify.cases.judging.records import ReasonCode
 from mpm_verify.cases.mms import execute as mms
 from mpm_verify.cases.mms.execute import Comparison
 from mpm_verify.cases.mms.expectations import expected
-from mpm_verify.cases.mms.norms import compare, new_shares
+from mpm_verify.cases.mms.norms import compare, new_sums
 from mpm_verify.cases.mms.run import Result, Run
 from mpm_verify.solver._jit import use_threads
 from mpm_verify.solver.boundary import Walls
@@ -75,7 +75,7 @@ def body_force(place: Callable[[Particles], Floats], late: float) -> Plant:
     """Body force at another place, and `late` steps too late."""
 
     def plant(m: Model, c: Comparison) -> Comparison:
-        kernel, unused = c.exact.kernel, new_shares(m.particles)
+        kernel, unused = c.exact.kernel, new_sums(m.particles)
 
         def change(p: Particles, t: float) -> None:
             columns, scalars = kernel.columns(place(p)), kernel.scalars(t + late * m.dt, t)

@@ -31,7 +31,7 @@ def test_every_condition_is_kept(name: str) -> None:
     for condition in test.conditions:
         weights = np.array(condition.weights)
         if condition.of == "strain":
-            np.testing.assert_allclose(found.strain @ weights, condition.share * gone, atol=1e-12)
+            np.testing.assert_allclose(found.strain @ weights, condition.fraction * gone, atol=1e-12)
         else:
             held = found.sigma[:, [0, 1, 3]] @ weights
             np.testing.assert_allclose(held, held[0], rtol=1e-9)
@@ -164,7 +164,7 @@ def test_a_path_from_a_file(tmp_path: Path) -> None:
         ("exx,eyy,exy,gxy\n0,0,0,0\n0.1,0,0,0\n", "both exy and gxy"),
         ("exx [%],eyy,exy\n0,0,0\n0.1,0,0\n", r"eyy has no unit; write eyy \[%\] or \[-\]"),
         ("exx [1e-6],eyy,exy\n0,0,0\n0.1,0,0\n", r"exx is in 1e-6; strains are taken in \[%\]"),
-        (b"exx,eyy,exy\n\xff\xfe\n", "is no CSV text in UTF-8"),
+        (b"exx,eyy,exy\n\xff\xfe\n", "is not CSV text in UTF-8"),
         ("exx,eyy,exy\n0,0,0\n0.1,0,0\n".encode("utf-16"), "UTF-16 text .* save it as CSV in UTF-8"),
         ("exx,eyy,exy\n0,0,0\n0.1,0,0\n".encode("utf-16-le"), "UTF-16 text"),
     ],

@@ -160,7 +160,7 @@ def test_a_study_whose_end_nobody_reads(tmp_path: Path, redirected: str) -> None
     code, err = ended(words, redirected, ">/dev/null" if redirected == "2>&-" else "")
     assert code == (2 if "full" in redirected else 0)
     assert err == ("verify: cannot write to standard output: No space left on device\n" if code else "")
-    assert len(list((tmp_path / "runs").glob("*.json"))) == 1
+    assert len(list((tmp_path / "runs").glob("*.json"))) == 2
 
 
 # ---- a user's file that ends the program
@@ -260,13 +260,13 @@ def test_dry_run(verify: Call, idle: None, tmp_path: Path, name: str) -> None:
     *runs, last = out.splitlines()
     assert all(line.startswith("to do   ") for line in runs)
     assert len({line.split()[2] for line in runs}) == len(runs) > 0
-    assert f": {len(runs)} runs to be done, 0 stored, up to " in last
+    assert f": {len(runs)} run{'s' * (len(runs) > 1)} to be done, 0 stored, up to " in last
     assert content(tmp_path) == []
 
 
 LONG = ",".join(str(cells) for cells in range(2, 302))
 SQUARES = ",".join(str(side**2) for side in range(1, 301))
-HUNDRED = ",".join(f"flip:share={k / 100}" for k in range(1, 101))
+HUNDRED = ",".join(f"flip:fraction={k / 100}" for k in range(1, 101))
 TOML = f"""
 case = "column"
 [sweep]
@@ -274,7 +274,7 @@ damping = {[k / 300 for k in range(300)]}
 g = {[float(k) for k in range(1, 301)]}
 duration = {[k / 100 for k in range(1, 101)]}
 """
-MILLIONS = ["9000000 runs are asked for", "10000 is the most"]
+MILLIONS = ["9,000,000 runs are asked for", "10,000 is the most"]
 TOO_MUCH = {
     "particles": (["mms", "--ppc", "10000000000"], ["163,840,000,000,000 particles", "GB", "this machine has"]),
     "cells": (["mms", "--cells", "4096"], ["150,994,944 particles", "this machine has", "take fewer cells"]),

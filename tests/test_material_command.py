@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from mpm_verify.cases.element.case import examine
-from mpm_verify.cases.element.checks import TABLE, law_checks, run
+from mpm_verify.cases.element.checks import TABLE, material_checks, run
 from mpm_verify.cases.element.drawn import limit as limits
 from mpm_verify.cases.element.exam import ElementRemark, beyond, notes, origins, parameters
 from mpm_verify.cases.element.execute import execute
@@ -76,7 +76,7 @@ def test_every_law_passes_its_own_checks(name: str) -> None:
     "name", ["mohr_coulomb:phi=25,psi=5", "mohr_coulomb:c=100", "ubcsand:Rf=0.9", "ubcsand:Pa=1e5,KGp=8"]
 )
 def test_other_parameters_are_held_against_closed_forms(name: str) -> None:
-    checks = law_checks(create("mpm_verify.solver.material", name))
+    checks = material_checks(create("mpm_verify.solver.material", name))
     assert checks
     assert not [check for check in checks if check.outcome is not Outcome.PASS]
     assert not [check for check in checks if check.source == TABLE and "ubcsand" in name]
@@ -87,7 +87,7 @@ def test_a_wrong_direction_of_flow_is_seen(monkeypatch: pytest.MonkeyPatch) -> N
     law = create("mpm_verify.solver.material", "mohr_coulomb")
     wrong = create("mpm_verify.solver.material", "mohr_coulomb:psi=31").constants()
     monkeypatch.setattr(mohr_coulomb.MohrCoulomb, "constants", lambda self: wrong)
-    missed = {check.name for check in law_checks(law) if check.outcome is not Outcome.PASS}
+    missed = {check.name for check in material_checks(law) if check.outcome is not Outcome.PASS}
     assert "plane: largest miss, zz in any position" in missed
     assert "dilation, vertical strain over shear" in missed
 
@@ -97,7 +97,7 @@ def test_a_lost_failure_ratio_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     law = create("mpm_verify.solver.material", "ubcsand")
     wrong = create("mpm_verify.solver.material", "ubcsand:Rf=0.7").constants()
     monkeypatch.setattr(ubcsand.Ubcsand, "constants", lambda self: wrong)
-    missed = [check for check in law_checks(law) if check.outcome is not Outcome.PASS]
+    missed = [check for check in material_checks(law) if check.outcome is not Outcome.PASS]
     assert len(missed) > 20
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mpm_verify.cases.judging.fit import local_orders
-from mpm_verify.cases.mms.norms import CHUNK, SHARES, Norms, compare, new_shares
+from mpm_verify.cases.mms.norms import CHUNK, SUMS, Norms, compare, new_sums
 from mpm_verify.cases.mms.run import NORMS, QUANTITIES
 from mpm_verify.mms.manufacture import Manufactured, manufacture
 from mpm_verify.solver.material.neo_hookean import NeoHookean
@@ -31,7 +31,7 @@ def body(count: int, rng: np.random.Generator, unequal: bool = True) -> Particle
 def planted(exact: Manufactured, p: Particles, rng: np.random.Generator, norms: Norms) -> list[dict[str, Floats]]:
     """Add known errors to the exact state at several times and let the kernel find them; one dict a time."""
     p.carried = exact.kernel.columns(p.X)
-    errors, shares = [], new_shares(p)
+    errors, shares = [], new_sums(p)
     for n, t in enumerate(TIMES):
         size = {"u": 1e-3, "v": 0.1, "F": 1e-2, "sigma": 30.0}
         shape = {"u": (2,), "v": (2,), "F": (2, 2), "sigma": (4,)}
@@ -81,7 +81,7 @@ def test_against_plain_numpy(exact: Manufactured, count: int, unequal: bool) -> 
 def test_exact_state_has_no_error(exact: Manufactured) -> None:
     """To round-off: of places of size one for u, of the size of the field for the others."""
     p, t = body(1000, np.random.default_rng(1)), TIMES[1]
-    p.carried, shares, norms = exact.kernel.columns(p.X), new_shares(p), Norms(1000, float(p.V0.mean()))
+    p.carried, shares, norms = exact.kernel.columns(p.X), new_sums(p), Norms(1000, float(p.V0.mean()))
     p.x, p.v, p.F, p.sigma = exact.x(p.X, t), exact.v(p.X, t), exact.F(p.X, t), exact.sigma(p.X, t)
     compare(
         exact.kernel.fill, p.carried, exact.kernel.scalars(t, t), p.X, p.x, p.v, p.F, p.sigma, p.V0, p.b, shares
@@ -94,7 +94,7 @@ def test_exact_state_has_no_error(exact: Manufactured) -> None:
 def constant(steps: int, particles: int, error: float) -> dict[str, Any]:
     """Norms of the same error of every particle at every step."""
     norms = Norms(particles, 0.25)
-    shares = np.zeros((1, SHARES))
+    shares = np.zeros((1, SUMS))
     shares[0, :4] = 0.25 * particles * error**2  # weighted by V0
     shares[0, 4:] = error**2
     for _ in range(steps):
@@ -132,7 +132,7 @@ def test_more_particles_improve_the_printed_norm_alone() -> None:
 def test_nan_is_not_hidden(exact: Manufactured) -> None:
     """A NaN in one particle shows in the sums; a largest value alone would pass it over."""
     p, t = body(100, np.random.default_rng(2)), TIMES[0]
-    p.carried, shares, norms = exact.kernel.columns(p.X), new_shares(p), Norms(100, float(p.V0.mean()))
+    p.carried, shares, norms = exact.kernel.columns(p.X), new_sums(p), Norms(100, float(p.V0.mean()))
     p.x, p.v, p.F, p.sigma = exact.x(p.X, t), exact.v(p.X, t), exact.F(p.X, t), exact.sigma(p.X, t)
     p.v[57, 1] = np.nan
     compare(

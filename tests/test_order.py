@@ -202,6 +202,23 @@ def test_gate_levels() -> None:
     assert said(got).endswith("the order has settled: run with --cells 8,16,32,64")
 
 
+@pytest.mark.parametrize(
+    ("cells", "multiple", "asked"),
+    [
+        ((8,), 1, (8, 16, 32, 64)),
+        ((8, 16), 1, (8, 16, 32, 64)),
+        ((8, 12), 1, (8, 12, 18, 27)),
+        ((10, 20), 10, (10, 20, 40, 80)),
+        ((8, 16, 32), 1, (8, 16, 32, 64)),
+    ],
+)
+def test_too_few_levels_ask_for_enough(cells: tuple[int, ...], multiple: int, asked: tuple[int, ...]) -> None:
+    levels = [Level(1 / n, (1 / n**2,)) for n in cells]
+    got = judge(levels, Expectation(2.0), floor=0.0, dt_halved=levels[-1].errors[0], multiple=multiple)
+    assert got.reason.wanted is not None
+    assert got.reason.wanted.cells == asked
+
+
 def test_gate_finished() -> None:
     got = verdict(CLEAN, failed=[DET])
     assert (got.outcome, got.reason.code) == (INCONCLUSIVE, ReasonCode.LEVEL_MISSING)
@@ -595,13 +612,13 @@ def test_intervals_cover_the_truth_as_often_as_they_say(replicates: int) -> None
 
 
 def test_misuse_is_refused() -> None:
-    with pytest.raises(ValueError, match="share a cell size"):
+    with pytest.raises(ValueError, match="have the same cell size"):
         judge([Level(0.1, (1.0,)), Level(0.1, (2.0,))], SECOND, floor=0.0, dt_halved=None)
-    with pytest.raises(ValueError, match="not a level"):
+    with pytest.raises(ValueError, match="a level needs h > 0"):
         Level(0.0, (1.0,))
-    with pytest.raises(ValueError, match="not a level"):
+    with pytest.raises(ValueError, match="a level needs h > 0"):
         Level(0.1, (-1.0,))
     with pytest.raises(ValueError, match="belong together"):
         Expectation(2.0, constant=1.0)
-    with pytest.raises(ValueError, match="width"):
+    with pytest.raises(ValueError, match="must both be above zero"):
         Expectation(2.0, below=0.0)

@@ -76,7 +76,7 @@ def test_the_example_of_the_readme_passes(
 ) -> None:
     """It names no order; on screen it has the name of its file, and its path stands on the page once."""
     out = tmp_path / "out"
-    words = ("mms", "--quick", "--solution", EXAMPLE, "--jobs", "1", "--out", str(out))
+    words = ("mms", "--quick", "--page", "--solution", EXAMPLE, "--jobs", "1", "--out", str(out))
     code, said, err = verify(monkeypatch, capsys, *words)
     assert (code, err) == (0, "")
     assert "PASS  cpdi, 4 per cell, u in rms, order 2 expected" in said

@@ -116,7 +116,7 @@ def test_particles(ppc: int, share: float, weight: float) -> None:
     assert one.weight == pytest.approx(weight, abs=1e-4)
     assert (one.code in named_in(found)) == (weight >= 0.5)
     assert one.finding is (Finding.SHOWN if weight >= 0.25 else Finding.EXCLUDED)
-    assert f"with {ppc} per cell in place of 4" in sentences.measured(one)
+    assert f"with {ppc} per cell instead of 4" in sentences.measured(one)
     assert (one.numbers["ppc"], one.numbers["other_ppc"]) == (4, ppc)
     assert any(text.startswith("In part quadrature") for text in sentences.why(found)) == (0.25 <= weight < 0.5)
 
@@ -193,7 +193,7 @@ def test_a_method_that_crosses_as_often_and_converges_is_named() -> None:
     peers = (Peer("good", 1.99, 16.0, None), Peer("calm", 2.0, 1.0, None), Peer("bad", 0.3, 16.0, None))
     one = cause(stall(crossings=(2.0, 4.0, 8.0, 16.0), peers=peers), CauseCode.CROSSINGS)
     assert one.peer == peers[0]
-    assert sentences.measured(one).endswith("good passes 16.0 and has order 1.99")
+    assert sentences.measured(one).endswith("good crosses 16.0 and has order 1.99")
 
 
 def test_failed_runs_are_told() -> None:
@@ -206,7 +206,7 @@ def test_failed_runs_are_told() -> None:
     assert sentences.where(converged) == "the finest run that finished has 32 cells"
     assert named_in(converged) == [CauseCode.FAILED_RUN]
     assert sentences.why(converged)[0] == "A failed run: the run with 128 cells ended: det F ≤ 0 at step 21."
-    assert sentences.why(converged)[1] == "Measured too: cell crossings (a particle passes 4.0 faces at 32 cells)."
+    assert sentences.why(converged)[1] == "Measured too: cell crossings (a particle crosses 4.0 faces at 32 cells)."
     assert explain(Measured((), (), (), (), 4, ended=end)) is None
 
 

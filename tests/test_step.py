@@ -345,13 +345,13 @@ def test_flip_and_pic(name: str) -> None:
     assert after[0.0].std() < 0.7 * before.std()
 
 
-@pytest.mark.parametrize("share", [-0.1, 0.0, 1.1, np.nan])
-def test_a_flip_that_is_no_share(share: float) -> None:
+@pytest.mark.parametrize("fraction", [-0.1, 0.0, 1.1, np.nan])
+def test_a_flip_that_is_no_fraction(fraction: float) -> None:
     with pytest.raises(ValueError, match="above 0 and up to 1"):
-        Flip(share)
+        Flip(fraction)
 
 
-def test_an_unknown_stress_order() -> None:
+def test_an_unknown_stress_update() -> None:
     with pytest.raises(ValueError, match="choose from usl, musl, usf"):
         Scheme(stress="last")
 

@@ -4,6 +4,7 @@ import errno
 import gc
 import json
 import os
+import re
 from dataclasses import fields, replace
 from pathlib import Path
 
@@ -12,11 +13,15 @@ import numpy as np
 import pytest
 
 from mpm_verify.cases.harness import identity
-from mpm_verify.cases.harness.store import Store, StoreError
-from mpm_verify.cases.harness.study import Study
+from mpm_verify.cases.harness.contract import case_named
+from mpm_verify.cases.harness.runner import pending
+from mpm_verify.cases.harness.store import Store, StoreError, case_of
+from mpm_verify.cases.harness.study import FORMAT, Study
 from mpm_verify.cases.judging.order import Expectation
 from mpm_verify.cases.mms.run import Result, Run
 from mpm_verify.solver.failure import Failure, FailureKind
+from mpm_verify.solver.plugins import CASES, available
+from mpm_verify.verify.main import main
 
 RUN = Run("cpdi", "axis_aligned", "neo_hookean", 8, 4, 0.4)
 OTHER = {str: "other", int: 16, float: 0.125, tuple: (0.25, 0.0)}
@@ -217,8 +222,81 @@ def test_create_does_not_write_over_a_broken_study(store: Store, text: str) -> N
     assert (store.folder / "study.json").read_text() == text
 
 
-def test_no_study_folder(tmp_path: Path) -> None:
+@pytest.mark.parametrize("mine", available(CASES))
+def test_a_folder_of_another_case_is_left_as_it_is(store: Store, mine: str) -> None:
+    """Its study, its Results and its arrays; one line says whose it is."""
+    store.put(finished(), fixtures.arrays(RUN))
+    before, other = content(store.folder), Store(store.folder, mine)
+    study = Study("x", "x", "x", (case_named(mine).Run(),), (), case=mine)
+    if mine == "mms":
+        other.create(study)
+        assert content(store.folder).keys() == before.keys()
+        return
+    for refused in (lambda: other.create(study), other.study, lambda: other.get(RUN.digest)):
+        with pytest.raises(StoreError, match=f"{store.folder} holds the case mms, not {mine}; use another") as told:
+            refused()
+        assert "\n" not in str(told.value)
+    assert content(store.folder) == before
+    assert case_of(store.folder) == "mms"
+
+
+COMMANDS = {"column": ["column"], "element": ["material", "mohr_coulomb"], "objectivity": ["objectivity"]}
+
+
+@pytest.mark.parametrize("case", COMMANDS)
+def test_a_command_of_another_case_is_refused(
+    store: Store, case: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    store.put(finished(), fixtures.arrays(RUN))
+    before = content(store.folder)
+    monkeypatch.setattr("sys.argv", ["verify", *COMMANDS[case], "--out", str(store.folder)])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    told = capsys.readouterr()
+    assert (ended.value.code, told.out) == (2, "")
+    assert told.err == f"verify: {store.folder} holds the case mms, not {case}; use another --out folder\n"
+    assert content(store.folder) == before
+
+
+def test_a_result_of_another_format_is_not_read_and_not_run_again(store: Store) -> None:
+    """Older numbers are neither judged nor lost: nothing runs until they are out of the way."""
+    store.put(finished(), {})
+    path = store.runs / f"{RUN.digest}.json"
+    for number in (1, FORMAT + 1):
+        path.write_text(json.dumps(json.loads(path.read_text()) | {"format": number}))
+        before = content(store.folder)
+        says = f"{path} has format {number}, this version reads {FORMAT}; use another --out folder"
+        for refused in (lambda: store.get(RUN.digest), lambda: pending(store.study(), store)):
+            with pytest.raises(StoreError, match=re.escape(says)) as told:
+                refused()
+            assert "\n" not in str(told.value)
+        assert content(store.folder) == before
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("{", "is broken and was left as it is"),
+        ("[]", "is of the case None, and this version has column, element"),
+        ('{"format": 2}', "is of the case None"),
+        ('{"case": "mms"}', "has format None, this version reads 2"),
+        ('{"format": 1, "case": "beam"}', "has format 1, this version reads 2"),
+        ('{"format": 2, "case": "beam"}', "is of the case beam, and this version has column, element"),
+        ('{"format": 2, "case": ["mms"]}', "is of the case "),
+    ],
+)
+def test_whose_a_folder_is(store: Store, text: str, says: str) -> None:
+    assert case_of(store.folder) == "mms"
+    (store.folder / "study.json").write_text(text)
+    with pytest.raises(StoreError, match=says) as told:
+        case_of(store.folder)
+    assert "\n" not in str(told.value)
     with pytest.raises(StoreError, match=r"is no study folder: it holds no study\.json"):
+        case_of(store.folder / "runs")
+
+
+def test_no_study_folder(tmp_path: Path) -> None:
+    with pytest.raises(StoreError, match=r"is not a study folder: it has no study\.json"):
         Store(tmp_path).study()
 
 

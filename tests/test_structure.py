@@ -21,7 +21,7 @@ PLUGINS = {
     "mpm_verify.solver.rates": {"unrotate", "rotate", "order"},
     "mpm_verify.solver.negative_controls": {"unrotate", "rotate", "order"},
     "mpm_verify.solver.smoothing": {"of", "where", "stress", "strain", "check"},
-    "mpm_verify.solver.transfers": {"share", "start", "give", "filter", "take"},
+    "mpm_verify.solver.transfers": {"flip_fraction", "start", "give", "filter", "take"},
     "mpm_verify.mms.solutions": {"displacement", "boundary", "lower", "upper", "duration"},
 }
 FILES = sorted(file for floor in FLOORS for file in (TOP / floor).rglob("*.py"))

@@ -27,7 +27,7 @@ from mpm_verify.solver.transfers import _passes
 from mpm_verify.solver.transfers.apic import Apic
 
 BASES = available("mpm_verify.solver.basis")
-TRANSFERS = ("flip", "flip:share=0.95", "pic", "apic", "fmpm:order=2", "fmpm:order=4")
+TRANSFERS = ("flip", "flip:fraction=0.95", "pic", "apic", "fmpm:order=2", "fmpm:order=4")
 ORDERS = ("usl", "musl", "usf")
 LAW = NeoHookean(E=1e3, nu=0.3, rho0=1.0)
 DX = 1 / 16
@@ -260,12 +260,12 @@ def test_what_the_others_lose_of_it(name: str) -> None:
     assert lost["pic"] > 0.98
     assert lost["pic"] > lost["fmpm:order=2"] > 3 * lost["fmpm:order=4"] > 0.1
     assert 0.35 < lost["fmpm:order=2"] < 0.85
-    assert lost["flip"] < lost["flip:share=0.95"] < lost["pic"]
-    assert 0.35 < lost["flip:share=0.95"] < 0.75
+    assert lost["flip"] < lost["flip:fraction=0.95"] < lost["pic"]
+    assert 0.35 < lost["flip:fraction=0.95"] < 0.75
     assert 0.01 < lost["flip"] < 0.03
     one = {transfer: turned(name, transfer, steps=1) for transfer in TRANSFERS}
     assert abs(one["flip"]) < 1e-14  # at rest relative to the turn there is no force, and v stays
-    assert one["flip:share=0.95"] == pytest.approx(0.05 * one["pic"], rel=1e-6)  # a mean of the two, in one step
+    assert one["flip:fraction=0.95"] == pytest.approx(0.05 * one["pic"], rel=1e-6)  # a mean of the two, in one step
     assert 0.02 < one["pic"] < 0.04  # the corners of the body, where the mean over nodes is not that of the place
     assert one["fmpm:order=2"] < 0.1 * one["pic"]
 
@@ -329,8 +329,8 @@ def test_energy_of_the_others(order: str) -> None:
     assert lost["fmpm:order=2"] == pytest.approx(0.0163, rel=0.05)  # 1 - A of this wave, squared
     assert abs(lost["fmpm:order=4"]) < 1e-3
     assert lost["pic"] > 10 * lost["fmpm:order=2"] > 100 * abs(lost["fmpm:order=4"])
-    assert lost["flip"] < lost["flip:share=0.95"] < lost["pic"]
-    assert 0.08 < lost["flip:share=0.95"] < 0.11
+    assert lost["flip"] < lost["flip:fraction=0.95"] < lost["pic"]
+    assert 0.08 < lost["flip:fraction=0.95"] < 0.11
     assert lost["apic"] == pytest.approx(3.7e-3, rel=0.1)
     for transfer, often in (("fmpm:order=2", 2.0), ("apic", 2.2)):
         assert energy_lost(transfer, order, 1, 0.2)[0] == pytest.approx(often * lost[transfer], rel=0.05)
@@ -501,9 +501,9 @@ def test_single_passes_give_the_bits_of_the_fused_one(transfer: str) -> None:
         particles_to_grid(m)
         equation_of_motion(m)
     grid_to_particles(fused)
-    p, share = single.particles, single.scheme.transfer.share
+    p, flip = single.particles, single.scheme.transfer.flip_fraction
     taken = _passes.collect(single, single.grid.velocity_acceleration)
-    p.v[:] = share * (p.v + single.dt * taken[:, 2:]) + (1 - share) * taken[:, :2]
+    p.v[:] = flip * (p.v + single.dt * taken[:, 2:]) + (1 - flip) * taken[:, :2]
     motion, half = single.grid.velocity_acceleration, single.scheme.half(single.dt)
     _passes.advect(single, motion, motion, half)
     for array in ("x", "v", "F"):
@@ -578,5 +578,5 @@ def test_apic_without_a_gradient_starts_from_rest() -> None:
     m = model("cpdi", "apic")
     assert m.particles.affine_velocity.shape == (len(m.particles), 4)
     assert not m.particles.affine_velocity.any()
-    assert Apic.share == 0.0
+    assert Apic().flip_fraction == 0.0
     assert model("cpdi", "flip").particles.affine_velocity.shape == (400, 0)

@@ -123,13 +123,13 @@ def test_a_wrong_rate_is_seen() -> None:
 def test_angles() -> None:
     assert angle_at(0.5) == 0
     assert angle_at(1.5) == pytest.approx(np.pi / 4)
-    assert Block().share == pytest.approx(0.2467, rel=1e-3)
-    assert Block(L=0.01).share == pytest.approx(0.002467, rel=1e-3)
+    assert Block().inertial_fraction == pytest.approx(0.2467, rel=1e-3)
+    assert Block(L=0.01).inertial_fraction == pytest.approx(0.002467, rel=1e-3)
 
 
 @pytest.mark.parametrize(("cells", "ppc"), [(3, 4), (200, 4), (8, 5), (8, 0)])
 def test_no_such_block(cells: int, ppc: int) -> None:
-    with pytest.raises(ValueError, match=r"must be from 4 to 128|is no square number"):
+    with pytest.raises(ValueError, match=r"must be from 4 to 128|is not a square number"):
         Block(cells=cells, ppc=ppc)
 
 
@@ -143,6 +143,6 @@ def test_the_ripple_of_the_ramp_is_the_blocks_own_vibration() -> None:
     block = Block()
     mean = execute(block)[0]["mean"]
     ramp = mean["t"] <= RAMP
-    exact = ramped_column(mean["t"][ramp], block.law.wave_speed(), block.L)
+    exact = ramped_column(mean["t"][ramp], block.material.wave_speed(), block.L)
     assert np.abs(mean["yy"][ramp] - exact).max() < 0.003
     assert np.abs(mean["yy"][ramp] + mean["t"][ramp]).max() > 0.03

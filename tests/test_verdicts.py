@@ -230,7 +230,7 @@ def test_nothing_is_expected_of_linear_elasticity() -> None:
 
 
 @pytest.mark.parametrize(
-    "changes", [{"transfer": "apic"}, {"transfer": "flip:share=0.95"}, {"stress": "musl"}, {"stress": "usf"}]
+    "changes", [{"transfer": "apic"}, {"transfer": "flip:fraction=0.95"}, {"stress": "musl"}, {"stress": "usf"}]
 )
 def test_nothing_is_expected_of_another_transfer_or_stress_order(changes: dict[str, str]) -> None:
     study = built(**changes)
@@ -239,8 +239,8 @@ def test_nothing_is_expected_of_another_transfer_or_stress_order(changes: dict[s
 
 
 def test_a_transfer_has_one_name() -> None:
-    assert built(transfer="flip:share=1").runs == built().runs
-    assert any(d.judged for d in built(transfer="flip:share=1.0").plans)
+    assert built(transfer="flip:fraction=1").runs == built().runs
+    assert any(d.judged for d in built(transfer="flip:fraction=1.0").plans)
     assert canonical(TRANSFERS, "fmpm:order=3.0") == "fmpm:order=3"
     assert canonical(TRANSFERS, "fmpm:order=2") == "fmpm"
 
@@ -289,7 +289,7 @@ def test_defaults_in_other_words_are_judged() -> None:
         ({"cells": (8, 1)}, "whole numbers from 2 to 4096"),
         ({"ppc": (2,)}, "choose from 1, 4, 9, 16"),
         ({"courant": 0.0}, "0.001 to 10"),
-        ({"transfer": "flip:share=-0.1"}, "above 0 and up to 1"),
+        ({"transfer": "flip:fraction=-0.1"}, "above 0 and up to 1"),
         ({"transfer": "nope"}, "choose from apic, flip, fmpm, pic"),
         ({"stress": "last"}, "choose from usl, musl, usf"),
         ({"solution": "nope"}, "choose from"),

@@ -100,7 +100,7 @@ def study(
     words = [f"{key}={value!r}" for key, value in axes.items()]
     command = f"mpm_verify.study({', '.join([repr(case), *words])})"
     asked: Study[Any] = build(Asked(case, values, replicates, quick), command)
-    settings = Settings(named(asked, Path(out) if out else None), jobs, threads, yes=True)
+    settings = Settings(named(asked, Path(out) if out else None), jobs=jobs, threads=threads, yes=True)
     store = Store(settings.folder, case)
     affordable(asked, store, settings)
     with store.locked():
@@ -110,7 +110,23 @@ def study(
 
 
 def load(folder: Path | str) -> "StoredStudy":
-    """Read a stored study, whoever ran it. Raises StoreError for a folder that holds none, or a broken one."""
+    """Read a stored study, whoever ran it.
+
+    Parameters
+    ----------
+    folder
+        Folder of a study: `--out` of a command, or `out` of `study`.
+
+    Returns
+    -------
+    StoredStudy
+        The study with its verdicts, checks and tables.
+
+    Raises
+    ------
+    StoreError
+        For a folder that does not hold a study, or a broken one.
+    """
     from mpm_verify.reports.frames import read
 
     return StoredStudy(read(Path(folder)))
@@ -118,7 +134,13 @@ def load(folder: Path | str) -> "StoredStudy":
 
 @dataclass(frozen=True)
 class StoredStudy:
-    """A study with its results, as they are stored."""
+    """Study with its results, as they are stored.
+
+    Parameters
+    ----------
+    record
+        What the folder holds.
+    """
 
     record: "Record"
 
@@ -134,14 +156,14 @@ class StoredStudy:
 
     @property
     def verdicts(self) -> list[dict[str, Any]]:
-        """A dictionary for each judged quantity, as in the JSON document."""
+        """Rows of the judged quantities, as in the JSON document."""
         from mpm_verify.reports.export.document import verdict
 
         return [verdict(self.record, found) for found in self.record.findings if found.plan.judged]
 
     @property
     def checks(self) -> list[dict[str, Any]]:
-        """A dictionary for each check, as in the JSON document."""
+        """Rows of the checks, as in the JSON document."""
         from dataclasses import asdict
 
         from mpm_verify.reports.export.document import check_row
@@ -149,13 +171,33 @@ class StoredStudy:
         return [asdict(check_row(check)) for check in self.record.analysis.checks]
 
     def frames(self) -> "dict[str, pd.DataFrame]":
-        """Tables as pandas frames by name: runs, and of refinements errors, orders, verdicts and more."""
-        from mpm_verify.reports.tables.study import frames
+        """Make the tables of the study.
 
-        return frames(self.record)
+        Returns
+        -------
+        dict of str to pandas.DataFrame
+            By name: runs, and of refinements errors, orders, verdicts and more, with full digits.
+        """
+        from mpm_verify.reports.tables import plain
+        from mpm_verify.verify.run import of_case
+
+        tables = of_case("reports.tables", self.record) or plain
+        made: dict[str, pd.DataFrame] = tables.frames(self.record)
+        return made
 
     def page(self) -> Path:
-        """Draw the HTML page, and give its path."""
+        """Draw the HTML page.
+
+        Returns
+        -------
+        Path
+            The page, report.html in the folder of the study.
+
+        Raises
+        ------
+        StoreError
+            Where the page cannot be written.
+        """
         from mpm_verify.verify.run import page_of
 
         return page_of(self.record)
@@ -167,7 +209,19 @@ class StoredStudy:
 
 @dataclass(frozen=True)
 class Judgement:
-    """What the order rule says: outcome, the sentence that gives the reason, fitted order and its interval."""
+    """Verdict of the order rule on a list of errors.
+
+    Parameters
+    ----------
+    outcome
+        PASS, FAIL, INCONCLUSIVE or ERROR.
+    reason
+        Sentence that says what decided, and which run would decide where nothing does.
+    order, interval
+        Fitted order and its 95 % interval; None with fewer than three levels.
+    local_orders
+        Orders between consecutive levels, coarse to fine.
+    """
 
     outcome: str
     reason: str
@@ -200,11 +254,11 @@ def judge(
     errors
         The error of each level in one norm, not negative.
     order, below, above
-        The expected order, and how far below and above it the whole interval may lie.
+        Expected order, and how far below and above it the whole interval may lie.
     floor
         Round-off floor of the quantity.
     dt_halved
-        Error of the finest level with half the time step; None if nobody ran that, which leaves PASS open.
+        Error of the finest level with half the time step; None if there is no such run, which leaves PASS open.
 
     Returns
     -------
@@ -221,7 +275,7 @@ def judge(
     from mpm_verify.reports.sentences.verdicts import reason
 
     if len(cells) != len(errors):
-        raise ValueError(f"{len(cells)} cells and {len(errors)} errors: one error a level is needed")
+        raise ValueError(f"{len(cells)} cells and {len(errors)} errors; give one error for each level")
     levels = [Level(1 / n, (float(error),)) for n, error in zip(cells, errors, strict=True)]
     found = rule(levels, Expectation(order, below, above), floor=floor, dt_halved=dt_halved)
     return Judgement(str(found.outcome), reason(found.reason), found.observed, found.interval, found.local_orders)

@@ -23,13 +23,13 @@ def completing(names: Callable[[], Sequence[str]]) -> Callable[[str], list[str]]
 
 
 def choices(package: str, own: bool = False) -> str:
-    """The names, for a help text, and that a user's file is taken."""
+    """Names of the plug-ins of a package, for a help text, and that a user's file is taken."""
     return ", ".join(available(package)) + "; or a file of your own" * own
 
 
 def integers(text: str, option: str) -> tuple[int, ...]:
-    """`8,16,32` as numbers; a usage error that names the option otherwise."""
+    """Whole numbers of a text such as `8,16,32`; a usage error that names the option otherwise."""
     try:
         return tuple(int(part) for part in text.split(","))
     except ValueError:
-        raise typer.TyperException(f"{option} {text!r} is no list of whole numbers; write 8,16,32,64") from None
+        raise typer.TyperException(f"{option} {text!r} is not a list of whole numbers; write 8,16,32,64") from None

@@ -55,12 +55,12 @@ def called_by(file: str) -> str:
 
 
 def rank(name: str) -> tuple[int, str]:
-    """Place in the help."""
+    """Rank of a command in the help."""
     return (FIRST.index(name) if name in FIRST else len(FIRST), name)
 
 
 def help_text() -> str:
-    """All commands, a line each: the first line of their files."""
+    """Text of the help, a line for each command: the first line of their files."""
     lines = []
     for name, file in files().items():
         first = first_line(file)
@@ -70,7 +70,7 @@ def help_text() -> str:
 
 
 def application(asked: str = "") -> object:
-    """The Typer application: with the one command that is asked for, or with all of them."""
+    """Typer application, with the one command that is asked for, or with all of them."""
     from importlib import import_module
 
     import typer
@@ -100,6 +100,8 @@ def main() -> None:
     A defect of this program ends with 4, and with its traceback: 1 would read as a verdict.
     """
     asked = sys.argv[1:2]
+    if "_VERIFY_COMPLETE" in os.environ:  # a shell asks what it may complete
+        sys.exit(called(""))
     if asked in ([], ["-h"], ["--help"]):
         sys.exit(told(help_text(), 0 if asked else USAGE))
     if asked == ["--version"]:
@@ -110,7 +112,7 @@ def main() -> None:
 
 
 def called(asked: str) -> int:
-    """Run a command; its exit code."""
+    """Run a command, and give its exit code."""
     from contextlib import suppress
 
     import typer
@@ -155,12 +157,15 @@ def told(text: str, code: int) -> int:
 
 
 def complain(message: str, code: int = USAGE) -> int:
-    """One line on standard error, if anybody reads it; gives the exit code back."""
+    """Print one line on standard error, if anybody reads it; gives the exit code back."""
     if message.startswith("No such command"):
         from mpm_verify.solver.plugins import meant
 
         near = meant(message.split("'")[1], files())
         message = f"{message.removesuffix('.')}{near}; choose from {', '.join(files())}"
+    before, possible, names = message.partition("(Possible options: ")
+    if possible:
+        message = f"{before}(did you mean {names.removesuffix(')')}?)"
     if sys.stderr is None:  # print() would take standard output instead
         return code
     with contextlib.suppress(OSError, ValueError, AttributeError):
@@ -169,7 +174,7 @@ def complain(message: str, code: int = USAGE) -> int:
 
 
 def run() -> None:
-    """The console script: main, and out. Python takes half a second to take the libraries apart, for nothing."""
+    """Console script: main, and out. Python takes half a second to take the libraries apart, for nothing."""
     try:
         main()
     except SystemExit as end:

@@ -47,16 +47,16 @@ COMMON: dict[str, tuple[Any, Any]] = {
 
 
 class StudyCommand(TyperCommand):
-    """A command whose yes-or-no fields can be given as flags too: --force, --no-staggered."""
+    """Command whose yes-or-no fields can be given as flags too: --force, --no-staggered."""
 
     flags: frozenset[str] = frozenset()
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Flags become --name=yes and --name=no."""
+        """Parse arguments in which flags have become --name=yes and --name=no."""
         return super().parse_args(ctx, [self.spelled(word, args[k + 1 :]) for k, word in enumerate(args)])
 
     def spelled(self, word: str, after: list[str]) -> str:
-        """One argument with its value, where it is a flag."""
+        """Argument with its value, where it is a flag."""
         name = word.removeprefix("--no-").removeprefix("--").replace("-", "_")
         if not word.startswith("--") or name not in self.flags:
             return word
@@ -107,7 +107,7 @@ def study_command(
 
 
 def option(item: Any, hints: Mapping[str, Any], usual: Mapping[str, Any]) -> Any:
-    """The option of a field; it may be repeated, and takes several values with commas."""
+    """Option of a field; it may be repeated, and takes several values with commas."""
     plugins, kind = item.metadata.get("plugins", ""), hints[item.name]
     words = ("yes", "no") if kind is bool else item.metadata.get("choices") or literal(kind)
     text = item.metadata.get("help", "")
@@ -129,7 +129,7 @@ def literal(kind: Any) -> tuple[str, ...]:
 
 
 def spelled(value: Any) -> str:
-    """A value as it is typed."""
+    """Value as it is typed."""
     if isinstance(value, bool):
         return "yes" if value else "no"
     return ",".join(map(str, value)) if isinstance(value, tuple) else str(value)
@@ -142,14 +142,14 @@ def values(run: type[Any], asked: Mapping[str, list[str]]) -> dict[str, list[Any
 
 
 def parsed(key: str, kind: Any, text: str) -> list[Any]:
-    """The values in one text. Raises ValueError."""
+    """Values in one text. Raises ValueError."""
     if get_args(kind) and all(item is float for item in get_args(kind)):
         return [pair(key, part) for part in text.split(";")]
     return [single(key, kind, part, text) for part in split(text)]
 
 
 def split(text: str) -> list[str]:
-    """`a:x=1,y=2,b` as `a:x=1,y=2` and `b`: what is key=value goes on with the parameters before it."""
+    """Split `a:x=1,y=2,b` into `a:x=1,y=2` and `b`: what is key=value goes on with the parameters before it."""
     found: list[str] = []
     for part in text.split(","):
         if found and re.fullmatch(r"\w+=[^:]*", part.strip()):
@@ -179,7 +179,7 @@ def single(key: str, kind: Any, part: str, typed: str) -> Any:
 
 
 def pair(key: str, text: str) -> tuple[float, float]:
-    """`0.25,-0.1` as two numbers. Raises ValueError."""
+    """Two numbers of a text such as `0.25,-0.1`. Raises ValueError."""
     try:
         x, y = (float(part) for part in text.split(","))
     except ValueError:

@@ -1,11 +1,11 @@
-"""The one way from a study to an exit code: run what is not stored, judge, draw, export, print."""
+"""Way from a study to an exit code, the only one: run what is not stored, judge, draw, export, print."""
 
 import os
 import shlex
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
@@ -30,9 +30,10 @@ NOT_REPEATED = ("--out", "--junit", "--json", "--jobs", "--threads", "--summary"
 
 @dataclass(frozen=True)
 class Settings:
-    """Where and how a study is run and told. `show` prints it; the usual is that of the case."""
+    """Settings of where and how a study is run and told. `show` prints it; the usual is that of the case."""
 
     folder: Path
+    _: KW_ONLY
     jobs: int | None = None
     threads: int = 1
     json_output: bool = False
@@ -48,7 +49,7 @@ class Settings:
 
 @contextmanager
 def usage() -> Iterator[None]:
-    """What is wrong with the input or the store becomes one line and exit code 2."""
+    """Turn what is wrong with the input or the store into one line and exit code 2."""
     from mpm_verify.cases.harness.runner import RunnerError
     from mpm_verify.cases.harness.store import StoreError
 
@@ -70,7 +71,7 @@ def usage() -> Iterator[None]:
 
 
 class Ended(typer.TyperException):
-    """One line on standard error, with an exit code of its own."""
+    """Error of one line on standard error, with an exit code of its own."""
 
     def __init__(self, message: str, code: int) -> None:
         super().__init__(message)
@@ -92,7 +93,7 @@ def conduct(study: "Study[Any]", settings: Settings) -> int:
         affordable(study, store, settings)
         writable(settings.junit, "--junit")
         writable(settings.summary, "--summary")
-        with store.locked():  # before study.json is written: whoever is refused leaves the other's study as it is
+        with store.locked():  # before study.json is written: whoever has to wait leaves the other's study as it is
             store.create(study)
             results = compute(study, store, settings)
             record = Record(store, study, results, earlier=False)
@@ -103,7 +104,7 @@ def conduct(study: "Study[Any]", settings: Settings) -> int:
 
 
 def draw(record: "Record", settings: Settings) -> Path | None:
-    """The page of the study; None where none is asked for."""
+    """Draw the page of the study; None where none is asked for."""
     wanted = settings.page
     if wanted is None:
         wanted = settings.vtk or not (settings.json_output or settings.junit or settings.quick)
@@ -148,7 +149,7 @@ def export(record: "Record", settings: Settings, page: Path | None) -> None:
 
 
 def more_of(record: "Record") -> dict[str, Any]:
-    """What the JSON document of a case has beside that of any: `more` of reports/export/<case>.py, if it is there."""
+    """Additions of a case to its JSON document: `more` of reports/export/<case>.py, if it is there."""
     module = of_case("reports.export", record)
     found: dict[str, Any] = module.more(record) if module else {}
     return found
@@ -168,7 +169,7 @@ def shown(record: "Record", page: Path | None) -> None:
 
 
 def compute(study: "Study[Any]", store: Any, settings: Settings) -> dict[str, Any]:
-    """The Results of the study; in this process if there is little to do or one job is asked for."""
+    """Run the study, and give its Results; in this process if there is little to do or one job is asked for."""
     from mpm_verify.cases.harness.runner import InProcess, Ticker, cost, pending, process_pool, run_study
     from mpm_verify.verify.terminal.progress import progress
 
@@ -183,13 +184,13 @@ def compute(study: "Study[Any]", store: Any, settings: Settings) -> dict[str, An
 
 
 def jobs_of(settings: Settings) -> int:
-    """Runs at a time."""
+    """Number of runs at a time."""
     return settings.jobs or max(1, (os.cpu_count() or 1) // settings.threads)
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """What a study takes: runs to be done and stored, the largest run, memory in bytes, time in seconds."""
+    """Estimate of what a study takes: runs to be done and stored, the largest run, memory in bytes, time in seconds."""
 
     runs: int
     stored: int
@@ -198,14 +199,14 @@ class Estimate:
     seconds: float
 
     def __str__(self) -> str:
-        """One line."""
-        told = f"{self.runs} run{'s' * (self.runs != 1)} to be done, {self.stored} stored"
-        needed = f"{self.memory / 2**30:.1f} GB of memory and {duration(self.seconds)}"
-        return f"{told}, up to {self.particles:,} particles, about {needed}"
+        """Estimate in one line."""
+        runs = f"{self.runs} run{'s' * (self.runs != 1)} to be done, {self.stored} stored"
+        told = f"{runs}, up to {self.particles:,} particles"
+        return f"{told}, about {self.memory / 2**30:.1f} GB of memory and {duration(self.seconds)}"
 
 
 def estimate(study: "Study[Any]", store: Any, settings: Settings) -> Estimate:
-    """What is known before anything runs; times are those of a slow processor."""
+    """Estimate what a study takes before anything runs; times are those of a slow processor."""
     from mpm_verify.cases.harness.runner import pending
 
     waiting = pending(study, store)
@@ -219,7 +220,7 @@ def estimate(study: "Study[Any]", store: Any, settings: Settings) -> Estimate:
 
 
 def affordable(study: "Study[Any]", store: Any, settings: Settings) -> None:
-    """Raises ValueError for a study that cannot be, or that takes hours and has no --yes."""
+    """Raise ValueError for a study that cannot be run, or that takes hours and has no --yes."""
     needed = estimate(study, store, settings)
     there = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     if needed.memory > there:
@@ -243,7 +244,7 @@ def told_plan(study: "Study[Any]", store: Any, settings: Settings) -> int:
 
 
 def duration(seconds: float) -> str:
-    """A time in the unit that people use."""
+    """Duration in the unit that people use."""
     for unit, size in (("days", 86400.0), ("hours", 3600.0), ("minutes", 60.0)):
         if seconds >= 2 * size:
             return f"{seconds / size:.0f} {unit}"
@@ -251,13 +252,13 @@ def duration(seconds: float) -> str:
 
 
 def check_count(count: int | None, option: str) -> None:
-    """Raises ValueError unless it is left out or 1 and more."""
+    """Raise ValueError unless the count is left out or 1 and more."""
     if count is not None and count < 1:
         raise ValueError(f"{option} takes whole numbers from 1 on")
 
 
 def command() -> str:
-    """The command that repeats this one, without what says only where the result goes."""
+    """Command that repeats this one, without what says only where the result goes."""
     kept, skip = [], False
     for argument in sys.argv[1:]:
         name, _, value = argument.partition("=")

@@ -13,12 +13,12 @@ Run, Result = ColumnRun, ColumnResult
 
 
 def title(runs: Sequence[ColumnRun]) -> str:
-    """What a study of columns is called."""
+    """Title of a study of columns."""
     return "Collapse of granular columns" if len(runs) > 1 else "Collapse of a granular column"
 
 
 def check(runs: Sequence[ColumnRun]) -> None:
-    """Raises ValueError for what no column can have: by setting up a small one of each kind."""
+    """Raise ValueError for what no column can have, by setting up a small one of each kind."""
     for run in runs:
         steps_of(run, material_of(run))
     kinds = (replace(run, cells=2, ppc=4, aspect=7.0, channel=18.0, courant=0.4, duration=1e-3) for run in runs)

@@ -1,4 +1,4 @@
-"""What holds of a column whatever the experiment says, and what a method is known not to hold: checks of a study.
+"""Checks of a study: invariants that hold of a column whatever the experiment says, where its method can hold them.
 
 Each invariant is checked for the run that is worst in it. Two are known not to hold the work of their forces: classical
 MPM, whose gradients of weights jump where a particle crosses a cell, and CPDI with domains that may be longer than 0.7
@@ -18,25 +18,25 @@ from mpm_verify.cases.column.run import ColumnRun, ColumnStudy
 from mpm_verify.cases.harness.checks import Check, Way
 from mpm_verify.solver.plugins import METHODS, SMOOTHINGS, TRANSFERS, create, load, split
 
-SHARE = "over the potential energy at first"
+OVER = "over the initial potential energy"
 BUDGET, DRIFT, BACK = 0.01, 1e-9, 1e-3
 MASS, STABLE = 1e-12, 0.95
 LONG = 0.7  # cells, half diagonal of a domain
 
 
 def checks(study: ColumnStudy, ran: Sequence[FinishedRun]) -> list[Check]:
-    """Of the runs that came to their end."""
+    """Checks of the runs that came to their end."""
     smooth = [one for one in ran if holds_work(one.run)]
     counted = [one for one in ran if not plugin(TRANSFERS, one.run.transfer).filters_walls]
     asked: list[tuple[str, Sequence[FinishedRun], list[float], float, str]] = [
-        (f"energy budget, largest residual {SHARE}", ran, [one.values["unbalanced"] for one in ran], BUDGET,
+        (f"energy budget, largest residual {OVER}", ran, [one.values["unbalanced"] for one in ran], BUDGET,
          "sum of terms measured apart"),
-        (f"work of the material less that of its forces, {SHARE}", smooth, [one.values["misworked"] for one in smooth],
+        (f"work of the material less that of its forces, {OVER}", smooth, [one.values["misworked"] for one in smooth],
          BUDGET, "virtual work"),
-        (f"plastic work, largest fall {SHARE}", smooth, [one.values["plastic_falls"] for one in smooth], BACK,
+        (f"plastic work, largest fall {OVER}", smooth, [one.values["plastic_falls"] for one in smooth], BACK,
          "dissipation"),
         ("momentum less that given by gravity, walls and damping, over m sqrt(2 g h)", counted,
-         [lost(one) for one in counted], DRIFT, "conservation"),
+         [missing(one) for one in counted], DRIFT, "conservation"),
         ("mass at the nodes over that of the particles, less 1", ran, [one.values["most_mass_lost"] for one in ran],
          MASS, "partition of unity"),
         ("Courant number with the stiffness and speed of the moment", ran, [one.values["most_courant"] for one in ran],
@@ -54,7 +54,7 @@ def checks(study: ColumnStudy, ran: Sequence[FinishedRun]) -> list[Check]:
 
 
 def holds_work(run: ColumnRun) -> bool:
-    """Whether the work of its forces is asked to be that of its stress."""
+    """Whether the work of the forces of a run must be that of its stress."""
     basis = plugin(METHODS, run.method)
     long = basis.has_limit and run.limit > LONG
     adjoint = run.smoothing == "none" or create(SMOOTHINGS, run.smoothing).adjoint
@@ -62,17 +62,17 @@ def holds_work(run: ColumnRun) -> bool:
 
 
 def plugin(package: str, specification: str) -> Any:
-    """The class of a plug-in, without its parameters."""
+    """Class of a plug-in, without its parameters."""
     return load(package, split(specification)[0])
 
 
 def named(study: ColumnStudy, run: ColumnRun) -> str:
-    """Which run it is, where there are several."""
+    """Name of a run by what the study varies; empty where there is one."""
     if len(study.runs) < 2 or not study.axes:
         return ""
     return f" ({', '.join(f'{axis}={value}' for axis, value in values(run, study.axes).items())})"
 
 
-def lost(one: FinishedRun) -> float:
-    """The momentum that nothing has taken."""
+def missing(one: FinishedRun) -> float:
+    """Momentum that no force accounts for, over m sqrt(2 g h)."""
     return one.values["most_momentum_lost"] / one.values["mass"] / sqrt(2 * one.run.g * one.run.height)

@@ -1,4 +1,4 @@
-"""What the paper says of the column, as claims that are held against our runs: reproduced or not, with the numbers.
+"""Claims: sentences of the paper about the column that are held against our runs: reproduced or not, with the numbers.
 
 A claim is about one axis: particles per cell, damping, smoothing, material. It is held against runs that differ in that
 axis alone. What "little" and "close" mean is said here, since the paper gives no numbers; None is the answer where our
@@ -17,7 +17,7 @@ from mpm_verify.cases.column.experiment import Band, Experiment, experiment
 from mpm_verify.cases.column.run import ColumnRun
 from mpm_verify.solver.state import Floats
 
-LITTLE = 0.01  # of the potential energy there was: what can be seen on a figure of it
+LITTLE = 0.01  # of the initial potential energy: what can be seen on a figure of it
 MARKED = 0.10  # of the largest kinetic energy
 CROWDED = 1.2  # from which crowding on a heap is too small for its material
 CLOSE = 0.05  # of the front
@@ -57,12 +57,12 @@ class FinishedRun:
 
     @property
     def front(self) -> float:
-        """At the end, in m."""
+        """Front at the end, m."""
         return self.values["front_99"]
 
     @property
     def height(self) -> float:
-        """At the wall at the end, in m."""
+        """Height at the wall at the end, m."""
         return self.values["height"]
 
 
@@ -117,7 +117,7 @@ def families(ran: Sequence[FinishedRun], axis: str) -> list[list[FinishedRun]]:
 
 
 def values(run: ColumnRun, axes: Sequence[str]) -> dict[str, Any]:
-    """What a run has on these axes."""
+    """Values of a run on these axes."""
     return {axis: getattr(run, axis) for axis in axes}
 
 
@@ -127,18 +127,18 @@ def compared(axis: str, *runs: FinishedRun) -> tuple[Compared, ...]:
 
 
 def rises(numbers: Sequence[float]) -> bool:
-    """Each above the one before."""
+    """Whether each number is above the one before."""
     return all(later > earlier for earlier, later in pairwise(numbers))
 
 
 def beyond(value: float, band: Band) -> float:
-    """How far above (or, negative, below) a band a value is, as a fraction of its nearer end; zero inside."""
+    """Distance of a value above (or, negative, below) a band, as a fraction of its nearer end; zero inside."""
     low, high = band
     return value / high - 1 if value > high else value / low - 1 if value < low else 0.0
 
 
 def of_particles(family: Sequence[FinishedRun], known: Experiment) -> list[Claim]:
-    """Figure 4."""
+    """Claims of Figure 4."""
     few = sorted(family, key=lambda one: one.run.ppc)
     first, last = few[0], few[-1]
     every, creep = compared("ppc", *few), max((one.values["creep"] for one in few), key=abs)
@@ -163,7 +163,7 @@ def settled(family: Sequence[FinishedRun], found: bool) -> bool | None:
 
 
 def of_damping(family: Sequence[FinishedRun], known: Experiment) -> list[Claim]:
-    """Figures 5 and 6."""
+    """Claims of Figures 5 and 6."""
     rising = sorted(family, key=lambda one: one.run.damping)
     first, last = rising[0], rising[-1]
     closer = abs(beyond(last.front, known.front)) < abs(beyond(first.front, known.front))
@@ -189,13 +189,13 @@ def of_damping(family: Sequence[FinishedRun], known: Experiment) -> list[Claim]:
 
 
 def largest_change(one: FinishedRun, other: FinishedRun, name: str) -> float:
-    """The largest difference of two curves at equal times."""
+    """Largest difference of two curves at equal times."""
     t = one.curves["t"]
     return float(np.abs(one.curves[name] - np.interp(t, other.curves["t"], other.curves[name])).max())
 
 
 def of_smoothing(family: Sequence[FinishedRun], known: Experiment) -> list[Claim]:
-    """Figure 7."""
+    """Claims of Figure 7."""
     by = {one.run.smoothing.partition(":")[0]: one for one in reversed(family)}
     plain, found = by.get("none"), []
     if plain and (one := by.get("volumetric")):
@@ -213,7 +213,7 @@ def of_smoothing(family: Sequence[FinishedRun], known: Experiment) -> list[Claim
 
 
 def of_material(family: Sequence[FinishedRun], known: Experiment) -> list[Claim]:
-    """Figure 8."""
+    """Claims of Figure 8."""
     by = {one.run.material.partition(":")[0]: one for one in reversed(family)}
     if not {"mohr_coulomb", "ubcsand"} <= by.keys():
         return []
@@ -234,7 +234,7 @@ def of_material(family: Sequence[FinishedRun], known: Experiment) -> list[Claim]
 
 
 def apart_at(sand: FinishedRun, plain: FinishedRun) -> tuple[float, float]:
-    """How far the fronts are apart: at most until EARLY, and at the end [m]."""
+    """Distance of the fronts: at most until EARLY, and at the end [m]."""
     t, front = sand.curves["t"], sand.curves["front_99"]
     difference = front - np.interp(t, plain.curves["t"], plain.curves["front_99"])
     return float(np.abs(difference[t <= EARLY]).max(initial=0.0)), abs(float(difference[-1]))

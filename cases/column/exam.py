@@ -18,7 +18,7 @@ from mpm_verify.cases.harness.study import Arrays
 
 
 class ColumnRemark(StrEnum):
-    """What a study of the column comes to."""
+    """Remarks on a study of the column."""
 
     FINISHED = "column.finished"  # runs that came to their end
     FAILED = "column.failed"
@@ -32,7 +32,7 @@ class ColumnRemark(StrEnum):
 
 @dataclass(frozen=True)
 class ColumnAnalysis:
-    """What a study holds: its results by digest, those that came to their end with their curves, and what they say."""
+    """Analysis of a study: its results by digest, those that came to their end with their curves, and what they say."""
 
     study: ColumnStudy
     results: Mapping[str, ColumnResult]
@@ -44,7 +44,7 @@ class ColumnAnalysis:
 
     @property
     def checks(self) -> tuple[Check, ...]:
-        """What decides the exit code."""
+        """Checks, which decide the exit code."""
         return self.examination.checks
 
 
@@ -80,7 +80,7 @@ def arrays(store: Store, result: ColumnResult) -> Arrays:
 def findings(
     study: ColumnStudy, ran: Sequence[FinishedRun], said: Sequence[Claim], done: int, unread: Sequence[str]
 ) -> list[Remark]:
-    """What came out."""
+    """Remarks on what came out."""
     found = [Remark(ColumnRemark.FINISHED, {"finished": len(ran), "runs": len(study.runs)})]
     if done - len(ran):
         found.append(Remark(ColumnRemark.FAILED, {"failed": done - len(ran)}))
@@ -102,9 +102,9 @@ def findings(
 
 
 def parameters(study: ColumnStudy, first: ColumnResult | None) -> dict[str, float | str]:
-    """What all runs share."""
+    """Parameters that all runs have in common."""
     found: dict[str, float | str] = {
         key: str(value) for key, value in asdict(study.runs[0]).items() if key not in (*study.axes, "case")
     }
-    laws = first.parameters if first and "material" not in study.axes else {}
-    return found | {f"material: {key}": str(value) for key, value in laws.items() if key != "domain limit"}
+    own = first.parameters if first and "material" not in study.axes else {}
+    return found | {f"material: {key}": str(value) for key, value in own.items() if key != "domain limit"}

@@ -5,11 +5,11 @@ other side is gone, or is lifted. Table 1: E = 840 kPa, nu = 0.3, phi = 31 deg, 
 The paper leaves open, and this is our choice, each a parameter of ColumnRun:
     mesh     a whole number of cells of the width; its 0.67 mm are half a grain, and 135 cells of the width
     wall     a roller at x = 0; floor and walls hand their reaction on to the particles (Walls.stops)
-    stress   none at first, so that the column first sags; or at rest, or by the law's oedometric loading
+    stress   none at first, so that the column first sags; or at rest, or by the material's oedometric loading
     start    the gate is gone at once
     end      a wall at the end of the channel, 18 widths away, and none above
 A cohesionless column of CPDI particles does not survive the plain scheme. What keeps it alive: the exponential update
-of F (Scheme.deformation), domains of limited length (solver/basis/cpdi.py) and void-strain memory of the law
+of F (Scheme.deformation), domains of limited length (solver/basis/cpdi.py) and void-strain memory of the material
 (solver/voids.py).
 """
 
@@ -43,11 +43,11 @@ MOST = 1e8  # steps
 
 
 def setup(run: ColumnRun) -> tuple[Model, int]:
-    """The column before it moves, and the number of steps. Raises ValueError for what does not fit together."""
+    """Column before it moves, and the number of steps. Raises ValueError for what does not fit together."""
     material, basis = material_of(run), basis_of(run)
     dx = run.width / run.cells
-    across, up = round(run.channel * run.cells), ceil((run.aspect + 1) * run.cells)
-    grid = Grid(dx, np.zeros(2), dx * np.array([across, up]))
+    columns, rows = round(run.channel * run.cells), ceil((run.aspect + 1) * run.cells)
+    grid = Grid(dx, np.zeros(2), dx * np.array([columns, rows]))
     low = np.array([grid.upper[0] - run.width if run.mirror else 0.0, 0.0])
     layout = rectangle(low, low + np.array([run.width, run.height]), dx, run.ppc, run.offset)
     particles = basis.populate(layout, material.rho0)
@@ -77,23 +77,25 @@ def steps_of(run: ColumnRun, material: Material) -> int:
     c = max(material.wave_speed(), material.wave_speed(3 * material.rho0 * run.g * run.height))
     count = run.duration / (run.courant * run.width / run.cells / c) * (1 - 1e-12)
     if not count < MOST:
-        raise ValueError(f"{count:.3g} steps would be needed, and {MOST:.0e} is the most; mind E, rho0 and courant")
+        raise ValueError(
+            f"{count:.3g} steps would be needed, and {MOST:.0e} is the most; choose a larger courant or fewer cells"
+        )
     whole: int = ceil(count)
     return max(1, whole)
 
 
 def material_of(run: ColumnRun) -> Material:
-    """The material, with void-strain memory where it has one. Raises ValueError for one that no column can have."""
+    """Material, with void-strain memory where it has one. Raises ValueError for one that no column can have."""
     material: Any = create(MATERIALS, run.material)
     if material.respond is None:
-        raise ValueError(f"the column must have a material in rate form, with a memory of its path, not {run.material}")
+        raise ValueError(f"the column must have a material in rate form, not {run.material}; choose mohr_coulomb")
     parts = run.void and "void" in material.memory and not material.cohesion
     made: Material = replace(material, void=1.0) if parts else material
     return made
 
 
 def basis_of(run: ColumnRun) -> Basis:
-    """The basis, with the limit of the run unless it has its own; no domain is cut before it is stretched."""
+    """Basis, with the limit of the run unless it has its own; no domain is cut before it is stretched."""
     basis: Basis = create(METHODS, run.method)
     return basis.limited(max(run.limit, sqrt(0.5 / run.ppc) * (1 + 1e-9)))
 
@@ -109,7 +111,7 @@ def walls(run: ColumnRun, grid: Grid) -> Walls:
 
 
 class Gate:
-    """Lifted at a constant speed: two columns of nodes at the column's free side are a roller above its lower edge."""
+    """Gate that is lifted at a constant speed: above its edge two columns of nodes beside the column are a roller."""
 
     def __init__(self, run: ColumnRun, grid: Grid, still: Walls) -> None:
         self.speed, self.still = run.gate, still
@@ -118,18 +120,20 @@ class Gate:
         self.y = grid.nodes[:, 1]
 
     def __call__(self, nodes: Floats, t: float, dt: float) -> tuple[NDArray[np.bool_], Floats, Floats]:
-        """held, value, rate (n,2) for the step from t on."""
+        """Held components, values and rates (n,2) for the step from t on."""
         held = self.still.held.copy()
         held[:, 0] |= self.near & (self.y > self.speed * t)
         return held, self.still.value, self.still.rate
 
 
 def gravity(particles: Particles, t: float) -> None:
-    """It is constant: written once, and it travels with the particles."""
+    """Leave the body force as it is: gravity is constant, written once, and travels with the particles."""
 
 
-def execute(run: ColumnRun, tick: Callable[[float], None] = lambda share: None) -> tuple[ColumnResult, dict[str, Any]]:
-    """Run to the end, or to where it cannot go on: a failed run is a Result. `tick` hears the share that is done."""
+def execute(
+    run: ColumnRun, tick: Callable[[float], None] = lambda fraction: None
+) -> tuple[ColumnResult, dict[str, Any]]:
+    """Run to the end, or to where it cannot go on: a failed run is a Result. `tick` hears the fraction that is done."""
     forget_peak()
     model, steps = setup(run)
     measure, failure = Measure(run, model), None
@@ -186,15 +190,15 @@ class Kept(Observer):
                 self.fields.setdefault(name, []).append(values)
 
     def arrays(self) -> dict[str, Any]:
-        """frame_t, frame_x (T,P,2), snapshot_t, and each field as snapshot_NAME (T,P,...)."""
+        """Arrays by name: frame_t, frame_x (T,P,2), snapshot_t, and each field as snapshot_NAME (T,P,...)."""
         found = {"frame_t": self.times[0], "frame_x": self.frames, "snapshot_t": self.times[1]}
         found |= {f"snapshot_{name}": values for name, values in self.fields.items()}
         return {name: np.array(values, np.float32) for name, values in found.items()}
 
 
 def fields(model: Model) -> dict[str, Any]:
-    """Fields of the particles in the initial order, float32: x, v, F, sigma, m, J, corners, the law's memory by name,
-    and where smoothing gives the forces another stress, that as sigma_smoothed."""
+    """Fields of the particles in the initial order, float32: x, v, F, sigma, m, J, corners, the memory of the
+    material by name, and where smoothing gives the forces another stress, that as sigma_smoothed."""
     p = model.particles
     found = {"x": p.x, "v": p.v, "F": p.F, "sigma": p.sigma, "m": p.m, "J": p.J}
     if p.sigma_smoothed.size:
@@ -202,7 +206,7 @@ def fields(model: Model) -> dict[str, Any]:
     corners = model.basis.corners(p.x, p.F, p.domain, model.grid.dx)
     if corners is not None:
         found["corners"] = corners
-    found |= {name: p.history[:, place] for place, name in enumerate(model.material.memory)}
-    place = np.empty(len(p), np.int64)
-    place[p.id] = np.arange(len(p))
-    return {name: values[place].astype(np.float32) for name, values in found.items()}
+    found |= {name: p.history[:, column] for column, name in enumerate(model.material.memory)}
+    row = np.empty(len(p), np.int64)
+    row[p.id] = np.arange(len(p))
+    return {name: values[row].astype(np.float32) for name, values in found.items()}

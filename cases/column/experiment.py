@@ -1,4 +1,4 @@
-"""What is known of the experiment: bands, since its curves are not at hand and its laws are quoted in two forms.
+"""Experiment as bands, since its curves are not at hand and its scaling is quoted in two forms.
 
 Lube, Huppert, Sparks & Freundt, Phys. Rev. E 72 (2005) 041301 and Phys. Fluids 19 (2007) 043301: dry grains in a
 channel, collapsing to one side. For tall columns, a = h0/d0 above 3, the run-out (d - d0)/d0 grows as a^(2/3).
@@ -26,7 +26,7 @@ class Experiment:
 
 
 def experiment(run: ColumnRun) -> Experiment | None:
-    """What is known of a column of this width and aspect; None beyond the aspects that were measured."""
+    """Bands of the experiment for a column of this width and aspect; None beyond the aspects that were measured."""
     a, d0 = run.aspect, run.width
     if not ASPECTS[0] <= a <= ASPECTS[1]:
         return None

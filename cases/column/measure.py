@@ -1,7 +1,7 @@
-"""What is measured of a collapsing column: front, toe and height of the heap, energies, momenta, and what is scaled.
+"""Measurements of a collapsing column: front, toe and height of the heap, energies, momenta, and what is scaled.
 
 Front: the distance from the wall within which 99 or 99.9 % of the mass lies; single particles fly further. Toe: the
-far end of the heap that hangs together with the wall, in squares of a seventh of the width, by sides or corners.
+far end of the heap that is connected to the wall, in squares of a seventh of the width, by sides or corners.
 Height: below it lie 99 % of the mass of the heap next to the wall, in a strip of a seventh of the width; the profile is
 the same for each strip. A seventh on any grid, so that grids can be compared, unless cells are wider. Crowding: the
 volume V = J V0 that particles keep, over the space in which they are, within the heap. It should be 1; where particles
@@ -20,12 +20,12 @@ from mpm_verify.solver.model import Model, Observer
 from mpm_verify.solver.state import Floats
 
 LOOKS = 200  # rows of a run
-SHARE = 0.99
+FRACTION = 0.99  # of the mass of a strip, below its height
 SLACK = 1e-6  # of the largest stress: what round-off may pass the strength by
 
 
 class Measure(Observer):
-    """Takes a row of numbers and a profile at each look, and has an energy budget watch the steps between them.
+    """Observer that takes a row of numbers and a profile at each look, with an energy budget of the steps between.
 
     `run` says which way the heap runs.
     """
@@ -47,14 +47,14 @@ class Measure(Observer):
         if due(model.steps, self.steps, LOOKS):
             self.look(model)
 
-    def places(self, model: Model) -> Floats:
-        """Places (P,2) of the particles, x as the distance from the wall; within the grid whatever became of them."""
+    def positions(self, model: Model) -> Floats:
+        """Positions (P,2) of the particles, x as the distance from the wall; clipped to the grid."""
         x = np.clip(np.nan_to_num(model.particles.x), 0, model.grid.upper)
         return np.stack([self.end - x[:, 0], x[:, 1]], axis=1) if self.run.mirror else x
 
     def look(self, model: Model) -> None:
-        """One row."""
-        p, x = model.particles, self.places(model)
+        """Measure now: one row."""
+        p, x = model.particles, self.positions(model)
         heap = connected(x, self.run.strip)
         profile = surface(x[heap], p.m[heap], self.run.strip, self.strips)
         terms = self.budget.terms(model)
@@ -83,10 +83,10 @@ class Measure(Observer):
         self.profiles.append(profile)
 
     def split(self, model: Model, work: float) -> dict[str, float]:
-        """Elastic and plastic share of the work of stress.
+        """Elastic and plastic part of the work of stress.
 
         Linear elasticity stores an energy, and the rest is plastic. UBCSAND, whose moduli follow s, has none: there the
-        law gives the plastic work, per volume as it is, and the rest is called elastic.
+        material gives the plastic work, per volume as it is, and the rest is called elastic.
         """
         p, stored = model.particles, model.material.stored_energy
         if stored:
@@ -111,20 +111,20 @@ def due(step: int, steps: int, times: int) -> bool:
 
 
 def momentum(model: Model) -> Floats:
-    """Of all particles (2,)."""
+    """Momentum of all particles (2,)."""
     total: Floats = (model.particles.m[:, None] * model.particles.v).sum(axis=0)
     return total
 
 
-def quantile(x: Floats, m: Floats, share: float) -> float:
-    """The place below which this share of the mass lies."""
+def quantile(x: Floats, m: Floats, fraction: float) -> float:
+    """Position below which this fraction of the mass lies."""
     order = np.argsort(x)
     below = np.cumsum(m[order])
-    return float(x[order[np.searchsorted(below, share * below[-1])]])
+    return float(x[order[np.searchsorted(below, fraction * below[-1])]])
 
 
 def connected(x: Floats, side: float) -> Any:
-    """Which particles (P,) are of the heap that reaches the wall, by squares that touch."""
+    """Mask of the particles (P,) of the heap that reaches the wall, by squares that touch."""
     cell = np.maximum(np.floor(x / side).astype(int), 0)
     there = np.zeros(cell.max(axis=0) + 1, dtype=bool)
     there[cell[:, 0], cell[:, 1]] = True
@@ -135,19 +135,19 @@ def connected(x: Floats, side: float) -> Any:
 
 
 def surface(x: Floats, m: Floats, strip: float, strips: int) -> Floats:
-    """Height (strips,) below which SHARE of the mass of each strip lies; zero where there is none."""
+    """Height (strips,) below which FRACTION of the mass of each strip lies; zero where there is none."""
     number, heights = np.clip((x[:, 0] / strip).astype(int), 0, strips - 1), np.zeros(strips)
     order = np.argsort(number, kind="stable")
     bounds = np.searchsorted(number[order], np.arange(strips + 1))
     for k in range(strips):
         rows = order[bounds[k] : bounds[k + 1]]
         if len(rows):
-            heights[k] = quantile(x[rows, 1], m[rows], SHARE)
+            heights[k] = quantile(x[rows, 1], m[rows], FRACTION)
     return heights
 
 
 def worked(model: Model) -> Floats:
-    """Plastic work per volume of each particle (P,), in the initial order, of a law that counts it."""
+    """Plastic work per volume of each particle (P,), in the initial order, of a material that counts it; else zero."""
     memory = model.material.memory
     if "work_p" not in memory:
         return np.zeros(len(model.particles))
@@ -165,10 +165,10 @@ def crowding(x: Floats, V: Floats, side: float) -> float:
 
 
 def strength(model: Model) -> dict[str, float]:
-    """Share of the volume whose stress, as the forces have it, is outside the strength in the plane, and by how much.
+    """Fraction of particles whose stress, as the forces have it, is outside the strength in the plane, and by how much.
 
-    `beyond`: the largest t/(s sin phi + c cos phi) - 1 of particles with more than 1 % of the largest s. Of laws that
-    yield by t and s alone; zero of others. `idle`: the share without stress. `largest_s`: the largest s.
+    `beyond`: the largest t/(s sin phi + c cos phi) - 1 of particles with more than 1 % of the largest s. Of materials
+    that yield by t and s alone; zero of others. `idle`: the fraction without stress. `largest_s`: the largest s.
     """
     p, material = model.particles, model.material
     sigma = p.sigma_smoothed if p.sigma_smoothed.size else p.sigma
@@ -190,7 +190,7 @@ def strength(model: Model) -> dict[str, float]:
 
 
 def scaled(model: Model) -> dict[str, float]:
-    """Shares of particles with a cut domain and with void strain, the volume of void per solid, the extremes of J."""
+    """Fractions of particles with a cut domain and with void strain, the volume of void per solid, extremes of J."""
     p, memory = model.particles, model.material.memory
     cut = float(model.basis.cut(p.F, p.domain, model.grid.dx).mean())
     void = p.history[:, memory.index("void")] if "void" in memory else np.zeros(1)
@@ -209,9 +209,9 @@ def final(run: ColumnRun, curves: dict[str, Floats]) -> dict[str, float]:
 
     `rest`: since when the kinetic energy of the grid is below AT_REST of the potential energy; inf if it is not.
     `area`: under the final profile, over that of the column: 1 and what it has dilated, or less where it has shrunk.
-    Shares of the potential energy there was, largest at any time: `unbalanced`, of the budget; `misworked`, between the
-    work of the law and that of the forces; `lost` by the method; `plastic_falls`, that plastic work gave back.
-    `creep`: how much the height still changed in the last fifth of the time, as a share of it.
+    Fractions of the initial potential energy, largest at any time: `unbalanced`, of the budget; `misworked`, between
+    the work of the material and that of the forces; `lost` by the method; `plastic_falls`, that plastic work gave back.
+    `creep`: how much the height still changed in the last fifth of the time, as a fraction of it.
     """
     values = {name: float(column[-1]) for name, column in curves.items() if name != "profile"}
     for name in (

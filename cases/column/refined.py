@@ -40,7 +40,7 @@ class Scattered:
 
 
 def refinements(ran: Sequence[FinishedRun], axes: Sequence[str]) -> list[Refined]:
-    """Wherever a study has three levels or more."""
+    """Refinements in each axis on which a study has three levels or more."""
     found = []
     for axis in axes:
         for family in families(ran, axis) if axis in REFINES else ():
@@ -55,7 +55,7 @@ def refinements(ran: Sequence[FinishedRun], axes: Sequence[str]) -> list[Refined
 
 
 def scatter(ran: Sequence[FinishedRun], axes: Sequence[str]) -> list[Scattered]:
-    """Wherever a study has three positions or more."""
+    """Scatter over positions of the particles, where a study has three or more."""
     found = []
     for family in families(ran, "offset") if "offset" in axes else ():
         shared = values(family[0].run, [axis for axis in axes if axis != "offset"])

@@ -1,4 +1,4 @@
-"""What a run of the column is and gives: Run, ColumnResult and ColumnStudy, data for store and reports."""
+"""ColumnRun, ColumnResult and ColumnStudy, data for store and reports."""
 
 from dataclasses import dataclass, replace
 from math import inf, isqrt, sqrt
@@ -18,13 +18,13 @@ AT_REST = 1e-4  # kinetic energy of the grid, of the potential energy at first: 
 class ColumnRun(RunRecord):
     """One column; defaults are those of the paper's Table 1, what it leaves open is said in cases/column/case.py.
 
-    `method`, `material`, `transfer` and `smoothing` are specifications, smoothing may be "none"; `cells` of the width;
-    `damping`: its alpha; `courant`: dt c/dx, c the compression wave; `duration` and `gate` (speed at which the gate
-    is lifted, inf: gone at once) in SI units; `start`: initial stress; `left`: the wall at x = 0; `stops`: see
-    solver.boundary.Walls; `offset` shifts the particles in their cells, by shares of their spacing; `mirror` puts the
-    wall to the right. What keeps the column alive: `limit` of the half diagonals of CPDI domains, in cells (inf: none;
-    never below what a particle begins with), `void`-strain memory of laws that have one and no cohesion, and the
-    exponential `deformation`. Raises ValueError with one line for what no column has.
+    `method`, `material`, `transfer` and `smoothing` are specifications, smoothing may be "none"; `cells` of the
+    width; `damping`: its alpha; `courant`: dt c/dx, c the compression wave; `duration` and `gate` (speed at which
+    the gate is lifted, inf: gone at once) in SI units; `start`: initial stress; `left`: the wall at x = 0; `stops`:
+    see solver.boundary.Walls; `offset` shifts the particles in their cells, by fractions of their spacing; `mirror`
+    puts the wall to the right. What keeps the column alive: `limit` of the half diagonals of CPDI domains, in cells
+    (inf: none; never below what a particle begins with), `void`-strain memory of materials that have one and no
+    cohesion, and the exponential `deformation`. Raises ValueError with one line for what no column has.
     """
 
     method: str = axis("cpdi", "Basis of the method.", METHODS)
@@ -56,9 +56,11 @@ class ColumnRun(RunRecord):
 
     def __post_init__(self) -> None:
         if self.ppc < 1 or isqrt(self.ppc) ** 2 != self.ppc:
-            raise ValueError(f"{self.ppc} particles per cell is no square number; choose from 1, 4, 9, 16, ...")
+            raise ValueError(f"{self.ppc} particles per cell is not a square number; choose from 1, 4, 9, 16, ...")
         if not 2 <= self.cells <= MOST:
-            raise ValueError(f"cells = {self.cells} of the width must be 2 or more, and at most {MOST}")
+            raise ValueError(
+                f"cells = {self.cells} cannot be run; choose whole numbers from 2 to {MOST} over the width"
+            )
         for name in ("courant", "duration", "gate", "limit", "width", "aspect", "g"):
             if not getattr(self, name) > 0 or (getattr(self, name) == inf and name not in ("gate", "limit")):
                 raise ValueError(f"{name} = {getattr(self, name)} must be above zero and finite")
@@ -76,7 +78,7 @@ class ColumnRun(RunRecord):
 
     @property
     def height(self) -> float:
-        """Of the column at first."""
+        """Initial height of the column."""
         return self.width * self.aspect
 
     @property
@@ -97,12 +99,12 @@ class ColumnRun(RunRecord):
 
     @property
     def particles(self) -> int:
-        """Those of the column."""
+        """Number of particles of the column."""
         return round(self.aspect * self.cells**2 * self.ppc)
 
     @property
     def nodes(self) -> int:
-        """Those of the channel, one column's width above the column too."""
+        """Number of nodes of the channel, with one column's width above the column."""
         return round((self.channel * self.cells + 1) * ((self.aspect + 1) * self.cells + 1))
 
     def __str__(self) -> str:
@@ -120,7 +122,7 @@ class ColumnRun(RunRecord):
 
 @dataclass(frozen=True, kw_only=True)
 class ColumnResult(ResultRecord[ColumnRun]):
-    """What a ColumnRun gave. `values`: final numbers, see cases/column/measure.py; curves are in the arrays."""
+    """Outcome of a ColumnRun. `values`: final numbers, see cases/column/measure.py; curves are in the arrays."""
 
     run: ColumnRun
 

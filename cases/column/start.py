@@ -48,5 +48,5 @@ def oedometric(material: Any, load: float) -> tuple[Floats, Floats]:
 
 
 def path_strain(material: Material, stress: float) -> float:
-    """Roughly the strain that doubles the stress: the scale of steps."""
+    """Strain that doubles the stress, roughly: the scale of steps."""
     return stress / (material.rho0 * material.wave_speed() ** 2)

@@ -1,4 +1,4 @@
-"""The axes of element tests. Names of tests are those of paths.py, which is heavier to import."""
+"""Axes of element tests. Names of tests are those of paths.py, which is heavier to import."""
 
 from dataclasses import dataclass
 from hashlib import sha256
@@ -40,9 +40,9 @@ class ElementRun(RunRecord):
         if not 0 < self.stress < inf:
             raise ValueError(f"stress = {self.stress:g} must be above zero and finite: compression is positive")
         if bool(self.path) != (self.test == PATH):
-            raise ValueError("path: a file belongs to test = path, and to no other")
+            raise ValueError("path = FILE.csv and test = path belong together; give both or neither")
         if self.units and not self.path:
-            raise ValueError("units belongs to path: a CSV file")
+            raise ValueError("units needs a strain path from a file; give path = FILE.csv too")
 
     @property
     def cost(self) -> float:
@@ -59,7 +59,7 @@ class ElementRun(RunRecord):
 
 
 def file_digest(path: str) -> str:
-    """SHA-256 of a file's content; of one that cannot be read any more, what no other has."""
+    """Hash (SHA-256) of the content of a file; of one that cannot be read any more, text that no other has."""
     try:
         return sha256(Path(path).read_bytes()).hexdigest()
     except OSError:

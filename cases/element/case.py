@@ -35,17 +35,17 @@ class ElementAnalysis:
 
     @property
     def checks(self) -> tuple[Check, ...]:
-        """Those of all."""
+        """Checks of all materials."""
         return gathered(self.examinations)
 
 
 def title(runs: Sequence[ElementRun]) -> str:
-    """`Element tests of mohr_coulomb`."""
+    """Title, such as `Element tests of mohr_coulomb`."""
     return f"Element tests of {', '.join(dict.fromkeys(label(run.material) for run in runs))}"
 
 
 def canonical(values: dict[str, Any]) -> dict[str, Any]:
-    """The material without parameters at their defaults; of a path the whole path of its file."""
+    """Values with the material without parameters at their defaults; of a path the whole path of its file."""
     values["material"] = canonical_name(MATERIALS, values.get("material", ElementRun.material))
     if values.get("path"):
         values["path"] = str(Path(values["path"]).resolve())
@@ -53,12 +53,14 @@ def canonical(values: dict[str, Any]) -> dict[str, Any]:
 
 
 def check(runs: Sequence[ElementRun]) -> None:
-    """Raises ValueError with one line for a file that cannot be read, or a stress that the material cannot have."""
+    """Raise ValueError with one line for a file that cannot be read, or a stress that the material cannot have."""
     for run in runs:
         if run.path:
             test_of(run)
         if run.stress != CONFINED and create(MATERIALS, run.material).energy is not None:
-            raise ValueError("stress: a material with a stress from F starts undeformed; give it to one in rate form")
+            raise ValueError(
+                f"stress = {run.stress:g}: a material with a stress from F starts undeformed; leave stress out"
+            )
 
 
 def examine(study: Study[ElementRun], results: Mapping[str, ElementResult], store: Store) -> ElementAnalysis:
@@ -81,7 +83,7 @@ def named(key: tuple[str, float, int], among: Sequence[tuple[str, float, int]]) 
 
 
 def _one(study: Study[ElementRun], results: Sequence[ElementResult], store: Store) -> Examination:
-    """The Examination of results that share their material."""
+    """Examination of results that have their material in common."""
     run, tests, unread = results[0].run, [], []
     for result in results:
         if result.run.test != PROPERTIES:
@@ -108,7 +110,7 @@ def told_apart(tests: Sequence[ElementStudy]) -> list[ElementStudy]:
 
 
 def read(result: ElementResult, store: Store) -> ElementStudy:
-    """A stored test; without its curves where they cannot be read, which decide nothing."""
+    """Stored test; without its curves where they cannot be read, which decide nothing."""
     try:
         arrays = store.arrays(result.digest)
     except StoreError:

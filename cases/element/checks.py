@@ -1,4 +1,4 @@
-"""What is known of each law beyond curves: tables, limits and invariants, with what they are held against."""
+"""Checks of each material beyond curves: tables, limits and invariants, with what they are held against."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -28,21 +28,21 @@ RETURNS = (  # trial stress -> stress: E = 840, nu = 0.3, phi = 31, psi = 1, c =
 )
 
 
-def law_checks(law: Any) -> list[Check]:
-    """Checks of this material; none of one that nothing is known of."""
-    return CHECKS[law.name](law) if law.name in CHECKS else []
+def material_checks(material: Any) -> list[Check]:
+    """Checks of this material; none where nothing is known of it."""
+    return CHECKS[material.name](material) if material.name in CHECKS else []
 
 
-def run(law: Any, name: str, length: float, stress: float, steps: int = 100) -> Followed:
-    """An element test of another length, from an isotropic stress, compression positive."""
+def run(material: Any, name: str, length: float, stress: float, steps: int = 100) -> Followed:
+    """Run an element test of another length, from an isotropic stress, compression positive."""
     test = replace(TESTS[name], length=length, loose=1.0)
-    return follow(Element(law), test, steps, np.array([-stress, -stress, -stress, 0.0]))
+    return follow(Element(material), test, steps, np.array([-stress, -stress, -stress, 0.0]))
 
 
-def elastic(law: Hypoelastic) -> list[Check]:
-    """Uniaxial strain: M ln(stretch) and K0, from nothing."""
-    M, K0 = law.lam + 2 * law.mu, law.nu / (1 - law.nu)
-    end = run(law, "oedometric", 0.1, 0.0).sigma[-1]
+def elastic(material: Hypoelastic) -> list[Check]:
+    """Checks of uniaxial strain: M ln(stretch) and K0, from nothing."""
+    M, K0 = material.lam + 2 * material.mu, material.nu / (1 - material.nu)
+    end = run(material, "oedometric", 0.1, 0.0).sigma[-1]
     group = "Linear elasticity"
     return [
         Check(group, "vertical stress over M at a strain of -0.1", end[1] / M, -0.1, "relative", FORM, 1e-12),
@@ -50,88 +50,100 @@ def elastic(law: Hypoelastic) -> list[Check]:
     ]  # fmt: skip
 
 
-def davis_ratio(law: Any) -> float | None:
-    """Shear over vertical stress of simple shear at failure (Davis 1968); None of a law that it does not hold for."""
-    matched = law.name == "mohr_coulomb" or (law.name == "drucker_prager" and law.cone == "plane_strain")
-    if not matched or law.c:
+def davis_ratio(material: Any) -> float | None:
+    """Shear over vertical stress of simple shear at failure (Davis 1968); None where the material has another."""
+    matched = material.name == "mohr_coulomb" or (material.name == "drucker_prager" and material.cone == "plane_strain")
+    if not matched or material.c:
         return None
-    sf, sp = sin(radians(law.phi)), sin(radians(law.psi))
-    return float(sf * cos(radians(law.psi)) / (1 - sf * sp))
+    sf, sp = sin(radians(material.phi)), sin(radians(material.psi))
+    return float(sf * cos(radians(material.psi)) / (1 - sf * sp))
 
 
-def davis(law: Any) -> list[Check]:
-    """Simple shear at constant vertical stress at failure: stress ratio, and dilation; none where there is no ratio."""
-    ratio = davis_ratio(law)
+def davis(material: Any) -> list[Check]:
+    """Checks of simple shear at failure, under constant vertical stress: stress ratio and dilation, where known."""
+    ratio = davis_ratio(material)
     if ratio is None:
         return []
-    stress = 1e-6 * law.E  # far below the stiffness: then the last bit of elastic strain is gone soon
-    found = run(law, "shear_stress", 0.1, stress, 400)
+    stress = 1e-6 * material.E  # far below the stiffness: then the last bit of elastic strain is gone soon
+    found = run(material, "shear_stress", 0.1, stress, 400)
     before, after = columns(TESTS["shear_stress"], replace(found)), found.strain
     grown = (after[-1, 1] - after[-40, 1]) / (2 * (after[-1, 2] - after[-40, 2]))
     group = "Simple shear at failure"
     return [
         Check(group, "shear over vertical stress", before["tau"][-1] / stress, ratio, "absolute", "Davis (1968)", 1e-6),
-        Check(group, "dilation, vertical strain over shear", grown, tan(radians(law.psi)), "absolute", "tan psi", 1e-6),
+        Check(
+            group,
+            "dilation, vertical strain over shear",
+            grown,
+            tan(radians(material.psi)),
+            "absolute",
+            "tan psi",
+            1e-6,
+        ),
     ]
 
 
-def mohr_coulomb(law: MohrCoulomb) -> list[Check]:
-    """Returns of the table where the angles are its own, Davis' ratio, biaxial compression on both sides of yield."""
-    found = returns(law) if (law.phi, law.psi, law.nu, law.c, law.sigma_t) == (31, 1, 0.3, 0, 0) else []
-    stress, k, m = 5e3, slope(law.phi), slope(law.psi)
-    strong = k * stress + 2 * law.c * np.sqrt(k)
-    yields = (strong - stress) * (1 - law.nu**2) / law.E
-    end = run(law, "biaxial", 4 * yields, stress)
+def mohr_coulomb(material: MohrCoulomb) -> list[Check]:
+    """Checks of Mohr-Coulomb: returns of the table where the angles are its own, Davis' ratio, both sides of yield."""
+    found = (
+        returns(material)
+        if (material.phi, material.psi, material.nu, material.c, material.sigma_t) == (31, 1, 0.3, 0, 0)
+        else []
+    )
+    stress, k, m = 5e3, slope(material.phi), slope(material.psi)
+    strong = k * stress + 2 * material.c * np.sqrt(k)
+    yields = (strong - stress) * (1 - material.nu**2) / material.E
+    end = run(material, "biaxial", 4 * yields, stress)
     rate = (end.strain[-1] - end.strain[-20])[:2]
-    group, K0 = "Biaxial compression and K0", law.nu / (1 - law.nu)
-    just = run(law, "biaxial", yields * (1 - 1e-6), stress).history[-1, 0]
+    group, K0 = "Biaxial compression and K0", material.nu / (1 - material.nu)
+    just = run(material, "biaxial", yields * (1 - 1e-6), stress).history[-1, 0]
     found += [
         Check(group, "vertical stress at failure", -end.sigma[-1, 1], strong, "relative", FORM, 1e-10),
         Check(group, "plastic shear strain just before the yield strain", just, 0.0, "absolute", FORM, 1e-12),
         Check(group, "lateral over vertical strain at failure", rate[0] / rate[1], -m, "relative", FORM, 1e-9),
     ]  # fmt: skip
     if K0 * k > 1:
-        slid = run(law, "oedometric", 0.01, 1.0).history[-1, 0]
+        slid = run(material, "oedometric", 0.01, 1.0).history[-1, 0]
         found.append(Check(group, "plastic strain of an elastic K0 state", slid, 0.0, "absolute", "K0 k > 1", 0.0))
-    return found + davis(law)
+    return found + davis(material)
 
 
-def returns(law: MohrCoulomb) -> list[Check]:
-    """One stress outside each region's surface, zz in each of its places; de = 0 leaves the return alone."""
+def returns(material: MohrCoulomb) -> list[Check]:
+    """Checks of returns: a stress outside each region, zz in each position; de = 0 leaves only the return."""
     checks, none = [], np.zeros(3)
     for trial, exact, region in RETURNS:
         worst = 0.0
         for order in ((0, 1, 2), (1, 2, 0), (0, 2, 1)):  # which of the three stand in xx, yy, zz
             sigma = np.array([*(trial[i] for i in order), 0.0])
-            law.respond(law.constants(), sigma, none.copy(), np.zeros(len(law.memory)))
-            worst = float(np.max([worst, *(abs(sigma[place] - exact[i]) for place, i in enumerate(order))]))
+            material.respond(material.constants(), sigma, none.copy(), np.zeros(len(material.memory)))
+            worst = float(np.max([worst, *(abs(sigma[at] - exact[i]) for at, i in enumerate(order))]))
         checks.append(
             Check("Returns", f"{region}: largest miss, zz in any position", worst, 0.0, "absolute", TABLE, 1e-8)
         )
     return checks
 
 
-def drucker_prager(law: DruckerPrager) -> list[Check]:
-    """The cone matched in plane strain fails as Mohr-Coulomb does, once the strain has settled."""
-    return davis(law)
+def drucker_prager(material: DruckerPrager) -> list[Check]:
+    """Checks of Drucker-Prager: the cone matched in plane strain fails as Mohr-Coulomb does, in steady shear."""
+    return davis(material)
 
 
-def ubcsand(law: Ubcsand) -> list[Check]:
-    """Tables where the parameters are those of Table 2, else the closed forms; failure, work, bounds."""
-    if law.c or not law.Rf:
+def ubcsand(material: Ubcsand) -> list[Check]:
+    """Checks of UBCSAND: tables where the parameters are those of Table 2, else closed forms; failure, work, bounds."""
+    if material.c or not material.Rf:
         return []
-    return [*constant_s(law), *biaxial(law), *oedometric(law), *invariants(law)]
+    return [*constant_s(material), *biaxial(material), *oedometric(material), *invariants(material)]
 
 
-def constant_s(law: Ubcsand) -> list[Check]:
-    """Ratio, plastic shear and plastic volume after the tabulated strain, 100 steps."""
-    checks, usual, group = [], law == Ubcsand(), "Shear at constant s"
+def constant_s(material: Ubcsand) -> list[Check]:
+    """Checks at constant s: ratio, plastic shear and plastic volume after the tabulated strain, 100 steps."""
+    checks, usual, group = [], material == Ubcsand(), "Shear at constant s"
     for s, ratio, gamma, volume, _ in ubc.CONSTANT_S:
-        eta = ratio or law.eta_f
-        if eta > law.eta_f:
+        eta = ratio or material.eta_f
+        if eta > material.eta_f:
             continue
-        slip, shrunk = ubc.plastic_shear(law, s, eta), ubc.plastic_volume(law, s, eta)
-        end = run(law, "constant_s", slip + ubc.elastic_shear(law, s, eta), s).history[-1]
+        slip, shrunk = ubc.plastic_shear(material, s, eta), ubc.plastic_volume(material, s, eta)
+        end = run(material, "constant_s", slip + ubc.elastic_shear(material, s, eta), s).history[-1]
         at = f"s = {s / 1e3:g} kPa, eta = {eta:.3g}"
         wanted = (eta, gamma, volume) if usual else (eta, slip, shrunk)
         for what, found, expected in zip(("eta", "plastic shear", "contraction"), (end[0], end[1], -end[2]), wanted,
@@ -140,19 +152,19 @@ def constant_s(law: Ubcsand) -> list[Check]:
             checks.append(
                 Check(group, f"{what} at {at}", found, expected, "absolute", TABLE if usual else FORM, within)
             )
-    reached = run(law, "constant_s", 0.02, 5e3).history[-1, 0]
-    known = ubc.ETA_AT_TWO_PERCENT if usual else ubc.ratio_at(law, 5e3, 0.02)
+    reached = run(material, "constant_s", 0.02, 5e3).history[-1, 0]
+    known = ubc.ETA_AT_TWO_PERCENT if usual else ubc.ratio_at(material, 5e3, 0.02)
     return [*checks, Check(group, "eta at 5 kPa and a shear of 2 %", reached, known, "absolute", FORM, 1e-6)]
 
 
-def biaxial(law: Ubcsand) -> list[Check]:
-    """Ratio and lateral strain at the tabulated vertical strain, the peak and the flow there."""
-    checks, usual, group = [], law == Ubcsand(), "Drained biaxial compression at 5 kPa"
+def biaxial(material: Ubcsand) -> list[Check]:
+    """Checks of biaxial compression: ratio and lateral strain at the tabulated vertical strain, peak and flow there."""
+    checks, usual, group = [], material == Ubcsand(), "Drained biaxial compression at 5 kPa"
     for eta, _, gamma, volume, *_ in ubc.BIAXIAL:
-        if eta >= law.eta_f:
+        if eta >= material.eta_f:
             continue
-        shear, shrunk = (gamma, volume) if usual else ubc.biaxial(law, 5e3, eta)
-        end = run(law, "biaxial", (shrunk + shear) / 2, 5e3)
+        shear, shrunk = (gamma, volume) if usual else ubc.biaxial(material, 5e3, eta)
+        end = run(material, "biaxial", (shrunk + shear) / 2, 5e3)
         source = TABLE if usual else "quadrature"
         checks.append(
             Check(group, f"eta at the strain of eta = {eta}", end.history[-1, 0], eta, "absolute", source, 1e-6)
@@ -161,22 +173,22 @@ def biaxial(law: Ubcsand) -> list[Check]:
         checks.append(
             Check(group, f"lateral strain there ({eta})", lateral, (shrunk - shear) / 2, "absolute", source, 1e-6)
         )
-    end = run(law, "biaxial", 4 * (ubc.plastic_shear(law, 5e3, law.eta_f) + 0.01), 5e3, 800)
+    end = run(material, "biaxial", 4 * (ubc.plastic_shear(material, 5e3, material.eta_f) + 0.01), 5e3, 800)
     peak = end.sigma[-1, 1] / end.sigma[-1, 0]
     gone = end.history[-1] - end.history[-10]
-    f = law.eta_f
+    f = material.eta_f
     return [
         *checks,
         Check(group, "stress ratio at failure", peak, (1 + f) / (1 - f), "relative", "(1 + eta_f)/(1 - eta_f)", 1e-9),
-        Check(group, "dilation at failure", gone[2] / gone[1], f - law.eta_cv, "absolute", "eta_f - eta_cv", 1e-9),
+        Check(group, "dilation at failure", gone[2] / gone[1], f - material.eta_cv, "absolute", "eta_f - eta_cv", 1e-9),
     ]  # fmt: skip
 
 
-def oedometric(law: Ubcsand) -> list[Check]:
-    """K0, ratio and strain from a nearly stress-free state, for Table 2 alone: there is no closed form."""
-    if law != Ubcsand():
+def oedometric(material: Ubcsand) -> list[Check]:
+    """Checks of oedometric loading: K0, ratio and strain from a nearly stress-free state, for Table 2 alone."""
+    if material != Ubcsand():
         return []
-    found = run(law, "oedometric", 0.009, 50.0, 2000)
+    found = run(material, "oedometric", 0.009, 50.0, 2000)
     vertical, checks = -found.sigma[:, 1], []
     for stress, K0, eta, strain in ubc.OEDOMETRIC:
         for what, values, expected, within in (
@@ -189,18 +201,18 @@ def oedometric(law: Ubcsand) -> list[Check]:
     return checks
 
 
-def invariants(law: Ubcsand) -> list[Check]:
-    """Of random strains: the strength is never passed, plastic work never falls; and the work's closed form."""
-    group, element = "Invariants", Element(law)
+def invariants(material: Ubcsand) -> list[Check]:
+    """Checks of invariants: no random strain passes the strength or lets plastic work fall; the work's closed form."""
+    group, element = "Invariants", Element(material)
     worked, rng = MEMORY.index("work_p"), np.random.default_rng(1)  # a walk that spends most of its steps at failure
     state = element.start(np.array([-5e3, -5e3, -5e3, 0.0]))
     over, fall = -np.inf, -np.inf
     for move in rng.normal(0, 2e-4, (2000, 3)) - (2e-5, 2e-5, 0):
         before, state = state, element.step(state, move[None])[0]
-        over = float(np.maximum(over, excess(law, state.sigma)))  # max() would lose a NaN
+        over = float(np.maximum(over, excess(material, state.sigma)))  # max() would lose a NaN
         fall = float(np.maximum(fall, before.history[worked] - state.history[worked]))
-    end = run(law, "constant_s", 0.06, 5e3).history[-1]
-    work = end[worked] / (5e3 * law.eta_cv * end[MEMORY.index("gamma_p")])
+    end = run(material, "constant_s", 0.06, 5e3).history[-1]
+    work = end[worked] / (5e3 * material.eta_cv * end[MEMORY.index("gamma_p")])
     return [
         Check(group, "largest t - s sin(phi_f) over s, 2000 random steps", over, 1e-12, "at most", "strength"),
         Check(group, "largest fall of the plastic work", fall, 0.0, "at most", "dissipation"),
@@ -208,10 +220,10 @@ def invariants(law: Ubcsand) -> list[Check]:
     ]
 
 
-def excess(law: Ubcsand, sigma: Floats) -> float:
-    """By how much a stress passes the strength, over s."""
+def excess(material: Ubcsand, sigma: Floats) -> float:
+    """Excess of a stress over the strength, over s."""
     s = -(sigma[0] + sigma[1]) / 2
-    return -np.inf if s <= 0 else float((np.hypot((sigma[0] - sigma[1]) / 2, sigma[3]) - law.eta_f * s) / s)
+    return -np.inf if s <= 0 else float((np.hypot((sigma[0] - sigma[1]) / 2, sigma[3]) - material.eta_f * s) / s)
 
 
 # By the name of the material.

@@ -1,4 +1,4 @@
-"""What is drawn and compared of an element test: strains and stresses of soil mechanics, compression positive."""
+"""Curves of an element test, drawn and compared: strains and stresses of soil mechanics, compression positive."""
 
 from typing import Any
 
@@ -12,26 +12,26 @@ COMPLEX = 1e-30
 
 
 def columns(test: ElementTest, found: Followed) -> dict[str, Floats]:
-    """s, t, tau, sx, sy, sz of the stress; gamma (e1 - e3, or the shear along x of a shear test), ev, ey of strain."""
+    """Columns s, t, tau, sx, sy, sz of the stress; gamma (e1 - e3, or the shear of a shear test), ev, ey of strain."""
     xx, yy, zz, xy = found.sigma.T
     exx, eyy, exy = found.strain.T
-    across = np.hypot((xx - yy) / 2, xy)
+    radius = np.hypot((xx - yy) / 2, xy)
     gamma = 2 * exy if test.shear else np.hypot(exx - eyy, 2 * exy)
-    stress = {"s": -(xx + yy) / 2, "t": across, "tau": xy, "sx": -xx, "sy": -yy, "sz": -zz}
+    stress = {"s": -(xx + yy) / 2, "t": radius, "tau": xy, "sx": -xx, "sy": -yy, "sz": -zz}
     return stress | {"gamma": gamma, "ev": -(exx + eyy), "ey": -eyy}
 
 
 class EnergyElement(Element):
-    """The same element with the stress that the law's energy gives, by the complex step: independent of its kernel."""
+    """Element with the stress that the energy of its material gives, by the complex step: independent of its kernel."""
 
     def step(self, state: State, increments: Floats) -> list[State]:
-        """The states after each of the strain increments (n,3)."""
+        """States after each of the strain increments (n,3)."""
         strains = state.strain + increments
-        return [State(strain, energy_stress(self.law, strain), np.zeros(0)) for strain in strains]
+        return [State(strain, energy_stress(self.material, strain), np.zeros(0)) for strain in strains]
 
 
-def energy_stress(law: Any, strain: Floats) -> Floats:
-    """xx, yy, zz, xy of sigma = P F^T / J for F = exp(strain); of a law of small strains, which means P, P itself."""
+def energy_stress(material: Any, strain: Floats) -> Floats:
+    """Stress xx, yy, zz, xy (4,) for F = exp(strain): P F^T / J, or P itself of a material of small strains."""
     from mpm_verify.cases.element.element import stretch
 
     F = np.eye(3)
@@ -41,21 +41,21 @@ def energy_stress(law: Any, strain: Floats) -> Floats:
         for j in range(3):
             moved = F.astype(complex)
             moved[i, j] += 1j * COMPLEX
-            P[i, j] = law.energy(moved.tolist(), np.log).imag / COMPLEX
-    sigma = P if small(law) else P @ F.T / np.linalg.det(F)
+            P[i, j] = material.energy(moved.tolist(), np.log).imag / COMPLEX
+    sigma = P if small(material) else P @ F.T / np.linalg.det(F)
     stress: Floats = sigma[[0, 1, 2, 0], [0, 1, 2, 1]]
     return stress
 
 
-def small(law: Any) -> bool:
-    """Whether the law's stress is linear in F - I: then it stands for the first Piola stress."""
+def small(material: Any) -> bool:
+    """Whether the material's stress is linear in F - I: then it stands for the first Piola stress."""
     p = Particles(np.zeros((3, 2)), np.ones(3), np.ones(3), np.zeros((3, 0)))
-    p.F = np.array([np.eye(2) + share * np.array([[0.1, 0.02], [0.02, -0.05]]) for share in (1.0, 2.0, 3.0)])
-    law.update(p, 1.0)
+    p.F = np.array([np.eye(2) + factor * np.array([[0.1, 0.02], [0.02, -0.05]]) for factor in (1.0, 2.0, 3.0)])
+    material.update(p, 1.0)
     return bool(np.allclose(p.sigma[2] - p.sigma[1], p.sigma[1] - p.sigma[0], rtol=1e-9))
 
 
-def start(law: Any, test: ElementTest, stress: float) -> Floats:
-    """Isotropic stress at the start (4,), `stress` compression positive; nothing for a law of F."""
-    confined = stress * test.loose if law.energy is None else 0.0
+def start(material: Any, test: ElementTest, stress: float) -> Floats:
+    """Isotropic stress at the start (4,), `stress` compression positive; zero of a material with a stress from F."""
+    confined = stress * test.loose if material.energy is None else 0.0
     return np.array([-confined, -confined, -confined, 0.0])

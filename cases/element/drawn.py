@@ -1,4 +1,4 @@
-"""The curves of the element tests that are kept to be drawn, and the lines and points that are drawn beside them."""
+"""Curves of the element tests that are kept to be drawn, and the lines and points that are drawn beside them."""
 
 from collections.abc import Callable
 from math import cos, radians, sin
@@ -15,20 +15,18 @@ from mpm_verify.solver.material.ubcsand import Ubcsand
 MARKED = 5e3  # Pa, the confining stress of the reference tables
 DRAWN = 400  # points of a curve that are kept
 STRENGTH: dict[str, Callable[[Any], tuple[float, float]]] = {  # a and b of t = a + b s, by the name of the material
-    "mohr_coulomb": lambda law: (law.c * cos(radians(law.phi)), sin(radians(law.phi))),
-    "ubcsand": lambda law: (law.shift * law.eta_f, law.eta_f),
+    "mohr_coulomb": lambda material: (material.c * cos(radians(material.phi)), sin(radians(material.phi))),
+    "ubcsand": lambda material: (material.shift * material.eta_f, material.eta_f),
 }
 
 
-def drawn(law: Any, studies: list[ElementStudy], stress: float) -> Curves:
-    """Everything that the page draws."""
-    return curves(studies) | strength(law) | limit(law, stress) | marks(law, studies, stress)
+def drawn(material: Any, studies: list[ElementStudy], stress: float) -> Curves:
+    """Curves, lines and points that the page draws."""
+    return curves(studies) | strength(material) | limit(material, stress) | marks(material, studies, stress)
 
 
 def curves(studies: list[ElementStudy]) -> Curves:
-    """`test/NAME` and `exact/NAME` columns where they are known, `errors/NAME`: steps, error; `kind/NAME`: its
-    axes.
-    """
+    """Curves by name: columns of `test/NAME` and `exact/NAME` where known; `errors/NAME`: steps, error; `kind/NAME`."""
     kept: Curves = {}
     for one in studies:
         if one.curve:
@@ -42,26 +40,26 @@ def curves(studies: list[ElementStudy]) -> Curves:
     return kept
 
 
-def strength(law: Any) -> Curves:
-    """The line t = a + b s that a soil cannot pass in the plane, where the law has one."""
-    if law.name not in STRENGTH:
+def strength(material: Any) -> Curves:
+    """Line t = a + b s that a soil cannot pass in the plane, where the material has one."""
+    if material.name not in STRENGTH:
         return {}
-    a, b = STRENGTH[law.name](law)
+    a, b = STRENGTH[material.name](material)
     return {"strength": {"a": np.array([a]), "b": np.array([b])}}
 
 
-def limit(law: Any, stress: float) -> Curves:
-    """The shear stress that simple shear at constant vertical stress comes to, where it is known."""
-    ratio = davis_ratio(law)
+def limit(material: Any, stress: float) -> Curves:
+    """Shear stress that simple shear at constant vertical stress comes to, where it is known."""
+    ratio = davis_ratio(material)
     return {} if ratio is None else {"limit/shear_stress": {"tau": np.array([ratio * stress])}}
 
 
-def marks(law: Any, studies: list[ElementStudy], stress: float) -> Curves:
-    """Points of the reference tables on the curves of the law that they are for."""
-    if law != Ubcsand() or stress != MARKED:
+def marks(material: Any, studies: list[ElementStudy], stress: float) -> Curves:
+    """Points of the reference tables on the curves of the material that they are for."""
+    if material != Ubcsand() or stress != MARKED:
         return {}
     table = [
-        (slip + ubc.elastic_shear(law, s, eta), eta * s, ev)
+        (slip + ubc.elastic_shear(material, s, eta), eta * s, ev)
         for s, eta, slip, ev, _ in ubc.CONSTANT_S
         if s == MARKED and eta
     ]

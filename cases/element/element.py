@@ -1,7 +1,8 @@
-"""One element of a law without a grid: strains or stresses are given, the rest is found, step by step.
+"""One element of a material without a grid: strains or stresses are given, the rest is found, step by step.
 
-The law works in its own frame, so no rotation is involved. Strains are logarithmic, tensor components xx, yy, xy,
-tension positive, zz = 0 (plane strain). A law in rate form is asked by its kernel; a law of F by F = exp(strain).
+The material works in its own frame, so no rotation is involved. Strains are logarithmic, tensor components xx, yy, xy,
+tension positive, zz = 0 (plane strain). A material in rate form is asked by its kernel; one with a
+stress from F by F = exp(strain).
 """
 
 from collections.abc import Callable
@@ -20,14 +21,14 @@ ATTEMPTS, NUDGE = 60, 1e-7
 
 
 class ElementFailure(StrEnum):
-    """Why a step cannot be solved."""
+    """Kinds of failure of a step."""
 
-    NOT_FINITE = "not_finite"  # a stress that is no finite number
+    NOT_FINITE = "not_finite"  # a stress that is not finite
     NO_STRAIN = "no_strain"  # no strain leads to what is asked
 
 
 class ElementFailed(Exception):  # noqa: N818 - what cannot go on is a result
-    """The step cannot be solved: why, and the largest residual that is left, as a fraction of its scale."""
+    """Error of a step that cannot be solved: why, and the largest residual that is left, as a fraction of its scale."""
 
     def __init__(self, cause: ElementFailure, left: float = inf) -> None:
         super().__init__(cause, left)
@@ -36,7 +37,7 @@ class ElementFailed(Exception):  # noqa: N818 - what cannot go on is a result
 
 @dataclass(frozen=True)
 class State:
-    """strain (3,): xx, yy, xy; sigma (4,): xx, yy, zz, xy; history (H,)."""
+    """State of an element: strain (3,): xx, yy, xy; sigma (4,): xx, yy, zz, xy; history (H,)."""
 
     strain: Floats
     sigma: Floats
@@ -49,39 +50,39 @@ Control = Callable[[Floats, State], Floats]
 
 @dataclass(frozen=True)
 class Element:
-    """A law, as a function of states."""
+    """Material as a function of states."""
 
-    law: Any
+    material: Any
 
     @cached_property
     def constants(self) -> Floats:
-        """What the kernel of a law in rate form reads."""
-        constants: Floats = self.law.constants()
+        """Constants that the kernel of a material in rate form reads."""
+        constants: Floats = self.material.constants()
         return constants
 
     def start(self, sigma: Floats) -> State:
-        """The state under the stress sigma (4,); a law of F starts undeformed whatever it is."""
-        if self.law.respond is not None:
-            return State(np.zeros(3), sigma.copy(), self.law.initial(sigma[None])[0])
+        """State under the stress sigma (4,); a material with a stress from F starts undeformed whatever it is."""
+        if self.material.respond is not None:
+            return State(np.zeros(3), sigma.copy(), self.material.initial(sigma[None])[0])
         return State(np.zeros(3), np.zeros(4), np.zeros(0))
 
     def step(self, state: State, increments: Floats) -> list[State]:
-        """The states after each of the strain increments (n,3), all from the same state."""
+        """States after each of the strain increments (n,3), all from the same state."""
         count = len(increments)
         strains = state.strain + increments
-        if self.law.respond is not None:
+        if self.material.respond is not None:
             sigma, history = np.tile(state.sigma, count), np.tile(state.history, count)
-            self.law.respond(self.constants, sigma, np.ascontiguousarray(increments).ravel(), history)
+            self.material.respond(self.constants, sigma, np.ascontiguousarray(increments).ravel(), history)
             rows, memories = sigma.reshape(count, 4), history.reshape(count, -1)
         else:
             p = Particles(np.zeros((count, 2)), np.ones(count), np.ones(count), np.zeros((count, 0)))
             p.F = np.ascontiguousarray(stretch(strains))
-            self.law.update(p, 1.0)
+            self.material.update(p, 1.0)
             rows, memories = p.sigma, np.zeros((count, 0))
         return [State(*parts) for parts in zip(strains, rows, memories, strict=True)]
 
     def solve(self, state: State, control: Control, guess: Floats, scale: Floats) -> State:
-        """The state after one step under a control; `scale` (3,) is the size of its residuals. Raises ElementFailed.
+        """State after one step under a control; `scale` (3,) is the size of its residuals. Raises ElementFailed.
 
         Newton with a tangent by differences, and half the step where that does not bring the residual down: a corner
         of a yield surface has a tangent on either side. It ends at round-off: where no shorter step is better.
@@ -110,7 +111,7 @@ class Element:
     def _shorten(
         self, state: State, control: Control, x: Floats, move: Floats, scale: Floats, best: float
     ) -> Floats | None:
-        """x after the longest of the halved moves that lessens the residual; None where none does."""
+        """Strain increment after the longest of the halved moves that lessens the residual; None where none does."""
         for halvings in (range(1), range(1, 12)):  # the whole move is mostly right
             tried = x + move * 0.5 ** np.array(halvings)[:, None]
             for candidate, end in zip(tried, self.step(state, tried), strict=True):
@@ -120,7 +121,7 @@ class Element:
 
 
 def stretch(strain: Floats) -> Floats:
-    """exp of strains xx, yy, xy (...,3) as (...,2,2): e^m (cosh r I + sinh r / r dev), m and r centre and radius."""
+    """Stretch exp(strain) of strains xx, yy, xy (...,3) as (...,2,2): e^m (cosh r I + sinh r / r dev)."""
     m, half, xy = (strain[..., 0] + strain[..., 1]) / 2, (strain[..., 0] - strain[..., 1]) / 2, strain[..., 2]
     r = np.hypot(half, xy)
     even, odd = np.exp(m) * np.cosh(r), np.exp(m) * np.sinc(1j * r / np.pi).real

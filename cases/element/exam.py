@@ -1,4 +1,4 @@
-"""`verify material`: element tests of one material as an Examination, with errors and orders in the strain step."""
+"""Examination of one material by `verify material`: element tests with errors and orders in the strain step."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import asdict
@@ -18,7 +18,7 @@ from mpm_verify.solver.plugins import split
 
 
 class ElementRemark(StrEnum):
-    """What came out, what one should know of each test, and what parameters do."""
+    """Remarks on what came out, on each test, and on parameters."""
 
     TESTS = "element.tests"
     UNJUDGED = "element.unjudged"  # nothing is known of the path
@@ -47,8 +47,8 @@ class ElementRemark(StrEnum):
     UNREAD = "element.unread"  # files of curves that cannot be read
 
 
-def checks(law: Any, studied: ElementStudy) -> list[Check]:
-    """Each test ends, is as close to the exact curve as its order says, and of the order that the law has."""
+def checks(material: Any, studied: ElementStudy) -> list[Check]:
+    """Checks of a test: it ends, is as close to the exact curve as its order says, and has the material's order."""
     group, found = studied.test.title, []
     if studied.failed:
         at = f"step {studied.failed.step} of {studied.failed.steps}"
@@ -56,9 +56,9 @@ def checks(law: Any, studied: ElementStudy) -> list[Check]:
     finest = studied.errors[-1]
     if studied.source:
         second = 1e-6 * (1600 / studied.steps[-1]) ** 2  # what order 2 makes of 1e-6 in 1600 steps
-        allowed = max(second, ROUND_OFF) if law.order == 2 else ROUND_OFF
+        allowed = max(second, ROUND_OFF) if material.order == 2 else ROUND_OFF
         found.append(Check(group, "error at the end, finest", finest, allowed, "at most", studied.source))
-    if law.order == 2 and not studied.test.cyclic and not len(studied.test.points):
+    if material.order == 2 and not studied.test.cyclic and not len(studied.test.points):
         found.append(Check(group, "order in the strain step", studied.order, 1.9, "at least", "midpoint scheme"))
     return found
 
@@ -66,27 +66,28 @@ def checks(law: Any, studied: ElementStudy) -> list[Check]:
 def examination(
     study: Study[ElementRun],
     run: ElementRun,
-    law: Any,
+    material: Any,
     studies: Sequence[ElementStudy],
     known: Sequence[Check],
     reads: Sequence[PathSource],
     unread: Sequence[str],
     environment: dict[str, str],
 ) -> Examination:
-    """Tests of one material, with what is known of it; `unread` are files of curves that cannot be read."""
-    found = [*(check for one in studies for check in checks(law, one)), *known]
-    remarks = [*lead(law, studies, found), *rate_idle(run.material), *read(reads)]
-    remarks += [remark for one in studies for remark in notes(law, one)]
+    """Examination of the tests of one material, with what is known of it; `unread`: files that cannot be read."""
+    found = [*(check for one in studies for check in checks(material, one)), *known]
+    remarks = [*lead(material, studies, found), *rate_idle(run.material), *read(reads)]
+    remarks += [remark for one in studies for remark in notes(material, one)]
     if unread:
         remarks.append(Remark(ElementRemark.UNREAD, {"files": ", ".join(unread)}))
     return Examination(
-        study.name, study.title, study.command, tuple(remarks), tuple(found), parameters(law, run.stress, run.steps),
-        origins(law), environment, drawn(law, list(studies), run.stress),
+        study.name, study.title, study.command, tuple(remarks), tuple(found),
+        parameters(material, run.stress, run.steps), origins(material), environment,
+        drawn(material, list(studies), run.stress),
     )  # fmt: skip
 
 
 def rate_idle(specification: str) -> list[Remark]:
-    """A remark on an objective rate that is asked for, which no path of strains can tell from another."""
+    """Remark on an objective rate that is asked for, which no path of strains can tell from another."""
     given = [item.removeprefix("rate=") for item in split(specification)[1].split(",") if item.startswith("rate=")]
     return [Remark(ElementRemark.RATE_IDLE, {"rate": rate}) for rate in given]
 
@@ -104,8 +105,8 @@ def read(sources: Sequence[PathSource]) -> list[Remark]:
     return found
 
 
-def lead(law: Any, studies: Sequence[ElementStudy], found: Sequence[Check]) -> list[Remark]:
-    """What came out: how many checks, which orders, what is exact."""
+def lead(material: Any, studies: Sequence[ElementStudy], found: Sequence[Check]) -> list[Remark]:
+    """Remarks on what came out: how many checks, which orders, what is exact."""
     missed = sum(check.outcome != "PASS" for check in found)
     counts = {"tests": len(studies), "checks": len(found), "missed": missed}
     told = [Remark(ElementRemark.TESTS if found else ElementRemark.UNJUDGED, counts)]
@@ -115,13 +116,13 @@ def lead(law: Any, studies: Sequence[ElementStudy], found: Sequence[Check]) -> l
         told.append(Remark(ElementRemark.EXACT, {"tests": flat}))
     if orders:
         told.append(Remark(ElementRemark.ORDERS, {"least": min(orders), "most": max(orders)}))
-        if law.order == 1:
+        if material.order == 1:
             told.append(Remark(ElementRemark.FIRST_ORDER))
     return told
 
 
-def notes(law: Any, one: ElementStudy) -> list[Remark]:
-    """What the errors are held against, what came out, and how much of the path is the plane's alone to judge."""
+def notes(material: Any, one: ElementStudy) -> list[Remark]:
+    """Remarks on a test: what its errors are held against, what came out, and how much of the path zz stays within."""
     group, stopped = one.test.title, one.failed
     found = []
     if stopped:
@@ -137,43 +138,46 @@ def notes(law: Any, one: ElementStudy) -> list[Remark]:
         found.append(Remark(ElementRemark.NO_ORDER, {}, group))
     else:
         found.append(Remark(ElementRemark.ORDER, {"order": one.order}, group))
-    outside = beyond(law, one)
+    outside = beyond(material, one)
     if outside is not None:
         code = ElementRemark.ZZ_OUTSIDE if outside else ElementRemark.ZZ_WITHIN
         found.append(Remark(code, {"fraction": outside}, group))
     return found
 
 
-def beyond(law: Any, one: ElementStudy) -> float | None:
+def beyond(material: Any, one: ElementStudy) -> float | None:
     """Fraction of the finest run's steps in which zz leaves the plane's range; None of a material that sees zz."""
-    if law.name not in PLANE_ALONE or len(one.curve.get("s", ())) < 2:
+    if material.name not in PLANE_ALONE or len(one.curve.get("s", ())) < 2:
         return None
     sigma = np.column_stack([-one.curve["sx"], -one.curve["sy"], -one.curve["sz"], one.curve["tau"]])
-    return float(np.mean(PLANE_ALONE[law.name](sigma[1:])))
+    return float(np.mean(PLANE_ALONE[material.name](sigma[1:])))
 
 
-def parameters(law: Any, stress: float, steps: int) -> dict[str, float | str]:
+def parameters(material: Any, stress: float, steps: int) -> dict[str, float | str]:
     """Parameters of the material and of the tests."""
-    own: dict[str, float | str] = dict(asdict(law))
-    return own | {"confining stress": 0.0 if law.energy is not None else stress, "steps of the coarsest run": steps}
+    own: dict[str, float | str] = dict(asdict(material))
+    return own | {
+        "confining stress": 0.0 if material.energy is not None else stress,
+        "steps of the coarsest run": steps,
+    }
 
 
-def origins(law: Any) -> dict[str, str]:
+def origins(material: Any) -> dict[str, str]:
     """Codes for where a value comes from, and whether it has an effect."""
     found: dict[str, str] = {"steps of the coarsest run": ElementRemark.OR_MORE}
-    if law.energy is not None:
+    if material.energy is not None:
         found["confining stress"] = ElementRemark.UNDEFORMED
-    if law.name in ORIGINS:
-        found |= ORIGINS[law.name](law)
+    if material.name in ORIGINS:
+        found |= ORIGINS[material.name](material)
     return found
 
 
-def of_ubcsand(law: Ubcsand) -> dict[str, str]:
+def of_ubcsand(material: Ubcsand) -> dict[str, str]:
     """Codes for the parameters of UBCSAND."""
-    idle = ElementRemark.NO_EFFECT if law.reversal else ElementRemark.NO_EFFECT_PRIMARY
+    idle = ElementRemark.NO_EFFECT if material.reversal else ElementRemark.NO_EFFECT_PRIMARY
     found: dict[str, str] = {f"hfac{n}": idle for n in range(1, 7)}
     found |= {"Rf": ElementRemark.CORRELATION, "reversal": ElementRemark.OUR_READING}
-    if law.reversal:
+    if material.reversal:
         found |= dict.fromkeys(("hfac1", "hfac2"), str(ElementRemark.AFTER_REVERSAL))
     return found
 

@@ -1,11 +1,11 @@
-"""One element test: with once to sixteen times the steps, or what is known of the material beside curves."""
+"""Execution of one element test: with once to sixteen times the steps, or the checks of the material beside curves."""
 
 import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from mpm_verify.cases.element.checks import law_checks
+from mpm_verify.cases.element.checks import material_checks
 from mpm_verify.cases.element.path_file import from_file
 from mpm_verify.cases.element.paths import TESTS, ElementTest
 from mpm_verify.cases.element.run import PATH, PROPERTIES, ElementResult, ElementRun
@@ -17,7 +17,7 @@ from mpm_verify.solver.plugins import MATERIALS, create
 
 
 def test_of(run: ElementRun) -> ElementTest:
-    """The test of a run. Raises ValueError for a file that holds no path."""
+    """Test of a run. Raises ValueError for a file that does not hold a path."""
     return from_file(Path(run.path), run.units) if run.test == PATH else TESTS[run.test]
 
 
@@ -25,21 +25,21 @@ def execute(run: ElementRun, tick: Callable[[float], None] = lambda fraction: No
     """Run one test; one that cannot go on says where, and why."""
     use_threads(1)  # four rows at a time
     started, used = time.perf_counter(), time.process_time()
-    law = create(MATERIALS, run.material)
+    material = create(MATERIALS, run.material)
     arrays: Arrays = {}
     found: dict[str, Any] = {}
     if run.test == PROPERTIES:
-        found = {"checks": tuple(law_checks(law))}
+        found = {"checks": tuple(material_checks(material))}
     else:
         test = test_of(run)
-        one = study(law, test, run.stress, run.steps)
+        one = study(material, test, run.stress, run.steps)
         found = {"source": one.source, "stopped": one.failed, "counts": one.steps, "step_errors": one.errors,
                  "read": test.source}  # fmt: skip
         arrays = {f"curve/{name}": values for name, values in one.curve.items()}
         arrays |= {f"exact/{name}": values for name, values in (one.truth or {}).items()}
     result = ElementResult(
         run=run, digest=run.digest, status="finished", environment=environment(),
-        parameters=parameters("material", law), wall_s=time.perf_counter() - started,
+        parameters=parameters("material", material), wall_s=time.perf_counter() - started,
         cpu_s=time.process_time() - used, **found,
     )  # fmt: skip
     return result, arrays

@@ -23,7 +23,7 @@ TAKEN = "exx, eyy, and exy or gxy = 2 exy"
 PLAUSIBLE, LARGEST = (
     0.5,
     10.0,
-)  # of a strain: beyond the first it may be a percentage, beyond the second it is no strain
+)  # of a strain: beyond the first it may be a percentage, beyond the second it is not a strain
 MARKS = ";\t,"
 BLANK = " \t,;\"'"
 UNITS = {
@@ -42,7 +42,7 @@ NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([edED][+-]?\d+)?", re.ASCII)
 
 @dataclass(frozen=True)
 class Sheet:
-    """Columns by name and unit ("percent", "fraction", "" where none is said), and rows with the number of the line."""
+    """Sheet of columns by name and unit ("percent", "fraction", "" where none is said), and rows with their line."""
 
     path: File
     names: tuple[str, ...]
@@ -57,7 +57,7 @@ class Sheet:
         return np.array([self.strain(line, name, cells[at], percent, known) for line, cells in self.rows])
 
     def strain(self, line: int, name: str, cell: str, percent: bool, known: bool) -> float:
-        """A cell as a fraction; `known` says that its unit is stated. Raises ValueError for what is no strain."""
+        """Strain in a cell as a fraction; `known` says that its unit is stated. Raises ValueError for anything else."""
         where = f"{self.path}, line {line}: {name}"
         written = number(cell)
         if not cell:
@@ -70,12 +70,12 @@ class Sheet:
             meant = f"if it is meant as it is, --units fraction, up to {LARGEST:g}"
             raise ValueError(f"{where} = {cell} is a large strain: in per cent? Then add --units percent; {meant}")
         if not abs(value) <= LARGEST:
-            raise ValueError(f"{where} = {cell} is a strain of {value:g}, beyond {LARGEST:g}: no strain is so large")
+            raise ValueError(f"{where} = {cell} is a strain of {value:g}; write strains up to {LARGEST:g}")
         return value
 
 
 def from_file(path: File, units: str = "") -> ElementTest:
-    """The strain path of a CSV file, see above; `units`, "percent" or "fraction", is that of all its strains.
+    """Strain path of a CSV file, see above; `units`, "percent" or "fraction", is that of all its strains.
 
     The first row is where it starts. Raises ValueError with one line for what cannot be a path.
     """
@@ -98,7 +98,7 @@ def from_file(path: File, units: str = "") -> ElementTest:
 
 
 def read(path: File) -> Sheet:
-    """The file as columns and rows, none of them ragged. Raises ValueError."""
+    """Read the file as columns and rows, none of them ragged. Raises ValueError."""
     lines = content(decoded(path))
     if not lines:
         raise ValueError(f"{path} must have a header with {TAKEN}, and rows below it")
@@ -107,7 +107,7 @@ def read(path: File) -> Sheet:
     try:
         first, *rows = [(line, split(text, mark)) for line, text in lines]
     except csv.Error:
-        raise ValueError(f"{path} is no CSV text") from None
+        raise ValueError(f"{path} is not CSV text; save it as CSV in UTF-8") from None
     for line, cells in rows:
         if len(cells) != len(first[1]):
             comma = "; where a comma is the decimal sign, semicolons must separate" if mark == "," else ""
@@ -123,11 +123,11 @@ def decoded(path: File) -> str:
     except OSError as error:
         raise ValueError(f"{path}: {(error.strerror or str(error)).lower()}") from None
     if data[:2] in (b"\xff\xfe", b"\xfe\xff") or b"\0" in data[:1000]:
-        raise ValueError(f"{path} is UTF-16 text or no text; save it as CSV in UTF-8")
+        raise ValueError(f"{path} is UTF-16 text or not text; save it as CSV in UTF-8")
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError:
-        raise ValueError(f"{path} is no CSV text in UTF-8; save it as CSV in UTF-8") from None
+        raise ValueError(f"{path} is not CSV text in UTF-8; save it as CSV in UTF-8") from None
 
 
 def content(text: str) -> list[tuple[int, str]]:
@@ -159,14 +159,14 @@ def named(header: str) -> tuple[str, str]:
 
 
 def number(cell: str) -> float | None:
-    """The number in a cell, the sign of per cent left out; None where there is none."""
+    """Number in a cell, the sign of per cent left out; None where there is none."""
     text = cell.removesuffix("%").strip().replace("\N{MINUS SIGN}", "-")
     text = text if "." in text else text.replace(",", ".")
     return float(text.lower().replace("d", "e")) if NUMBER.fullmatch(text) else None
 
 
 def check_names(sheet: Sheet) -> str:
-    """The name of the shear column, exy or gxy. Raises ValueError unless the strains are there, once, and no others."""
+    """Name of the shear column, exy or gxy. Raises ValueError unless the strains are there, once, and no others."""
     path, names = sheet.path, sheet.names
     if {"exy", "gxy"} <= set(names):
         raise ValueError(f"{path} has both exy and gxy = 2 exy; leave one out")
@@ -183,7 +183,7 @@ def check_names(sheet: Sheet) -> str:
         if name not in zero(sheet):
             raise ValueError(
                 f"{path}: the strain {name} would not be used: taken are {TAKEN}; plane strain has ezz = 0, and no "
-                f"strain out of the plane; leave the column out, or rename it if it is no strain"
+                f"strain out of the plane; leave the column out, or rename it if it is not a strain"
             )
     return shear
 
@@ -214,7 +214,7 @@ def zero(sheet: Sheet) -> tuple[str, ...]:
 
 
 def unused(sheet: Sheet) -> tuple[str, ...]:
-    """Columns that are no strains, by name or number; one without name and content is nobody's."""
+    """Columns that are not strains, by name or number; one without name and content is nobody's."""
     kept = []
     for at, name in enumerate(sheet.names):
         if name not in ("exx", "eyy", "exy", "gxy") and not STRAIN.fullmatch(name):

@@ -1,4 +1,4 @@
-"""The element tests as data: of each three conditions on strains and stresses, and how far it goes.
+"""Element tests as data: three conditions on strains and stresses each, and how far the test goes.
 
 A strain condition gives the increment of a combination of xx, yy, xy (tensor), a stress condition holds one where it
 was. Compression is along y. A strain path of one's own comes from a CSV file (path_file.py).
@@ -19,31 +19,31 @@ CYCLES = 3
 
 @dataclass(frozen=True)
 class Condition:
-    """A combination with `weights` of xx, yy, xy: of the strain, which goes through `share` of the path's length; or of
-    the stress, which stays."""
+    """Condition on a combination with `weights` of xx, yy, xy: of the strain, which goes through `fraction` of the
+    length of the path; or of the stress, which stays."""
 
     of: Literal["strain", "stress"]
     weights: tuple[float, float, float]
-    share: float = 0.0
+    fraction: float = 0.0
 
 
 XX, YY, XY = (Condition("strain", w) for w in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)))
 
 
-def given(weights: tuple[float, float, float], share: float) -> Condition:
-    """A strain that is given."""
-    return Condition("strain", weights, share)
+def given(weights: tuple[float, float, float], fraction: float) -> Condition:
+    """Condition that gives a strain."""
+    return Condition("strain", weights, fraction)
 
 
 def held(*weights: float) -> Condition:
-    """A stress that is held."""
+    """Condition that holds a stress."""
     return Condition("stress", (weights[0], weights[1], weights[2]))
 
 
 @dataclass(frozen=True)
 class PathSource:
-    """What a path's file held: columns that are `used`, that are no strains, and strains out of the plane that are
-    `zero` in every row; `largest` is the largest strain component."""
+    """Content of the file of a path: columns that are `used`, that are not strains, and strains out of the plane that
+    are `zero` in every row; `largest` is the largest strain component."""
 
     name: str
     used: tuple[str, ...]
@@ -54,8 +54,8 @@ class PathSource:
 
 @dataclass(frozen=True)
 class ElementTest:
-    """`length` of the path in strain; `shear`: its curves are of xy; `closed`: the volume in the plane is kept;
-    `cyclic`: to either side CYCLES times and back to the middle; `loose`: it starts at this share of the stress."""
+    """Element test. `length` of the path in strain; `shear`: its curves are of xy; `closed`: the volume is kept;
+    `cyclic`: to either side CYCLES times and back to the middle; `loose`: it starts at this fraction of the stress."""
 
     name: str
     title: str
@@ -70,20 +70,20 @@ class ElementTest:
 
     @property
     def legs(self) -> int:
-        """Straight pieces: a number of steps is a multiple of it, so that no step goes around a corner."""
+        """Number of straight pieces: a number of steps is a multiple of it, so that no step goes around a corner."""
         return max(1, len(self.points) - 1, 4 * CYCLES * self.cyclic)
 
     def steps(self, least: int) -> int:
-        """The smallest number of steps from `least` on that the pieces share evenly."""
+        """Smallest number of steps from `least` on that is the same on each piece."""
         return -(-least // self.legs) * self.legs
 
     def gone(self, steps: int) -> Floats:
         """Strain (steps+1,) by which the path has gone along its conditions, there and back."""
-        share = np.linspace(0, 1, steps + 1)
+        fraction = np.linspace(0, 1, steps + 1)
         if not self.cyclic:
-            return share * self.length
+            return fraction * self.length
         corners = np.concatenate([[0.0], np.tile([1.0, 0.0, -1.0, 0.0], CYCLES)])
-        there: Floats = np.interp(share * self.legs, np.arange(self.legs + 1), corners) * self.length
+        there: Floats = np.interp(fraction * self.legs, np.arange(self.legs + 1), corners) * self.length
         return there
 
 
@@ -120,7 +120,7 @@ TESTS = {
 
 @dataclass(frozen=True)
 class Stopped:
-    """Why a test ends early, what was left of the residual, and at which of how many steps."""
+    """Early end of a test: why, what was left of the residual, and at which of how many steps."""
 
     cause: ElementFailure
     left: float
@@ -130,7 +130,7 @@ class Stopped:
 
 @dataclass(frozen=True)
 class Followed:
-    """Strain (N+1,3), sigma (N+1,4), history (N+1,H); `failed` where it ends before the last step."""
+    """Path of a test: strain (N+1,3), sigma (N+1,4), history (N+1,H); `failed` where it ends before the last step."""
 
     strain: Floats
     sigma: Floats
@@ -139,7 +139,7 @@ class Followed:
 
 
 def follow(element: Element, test: ElementTest, steps: int, start: Floats) -> Followed:
-    """The test in equal steps from the stress `start` (4,); what cannot go on ends there and says why."""
+    """Follow the test in equal steps from the stress `start` (4,); what cannot go on ends there and says why."""
     states, failed = [element.start(start)], None
     size, before = scale_of(element, states[0]), np.zeros(3)
     free = any(condition.of == "stress" for condition in test.conditions)
@@ -160,7 +160,7 @@ def follow(element: Element, test: ElementTest, steps: int, start: Floats) -> Fo
 
 
 def solved(element: Element, test: ElementTest, last: State, move: Floats, before: Floats, size: float) -> State:
-    """The next state: from the last increment, or from what is given alone. Raises ElementFailed."""
+    """Solve for the next state: from the last increment, or from what is given alone. Raises ElementFailed."""
     residuals, sizes = control(test, last, move), scales(test, move, size)
     if before @ move > 0:
         with suppress(ElementFailed):
@@ -169,7 +169,7 @@ def solved(element: Element, test: ElementTest, last: State, move: Floats, befor
 
 
 def scale_of(element: Element, state: State) -> float:
-    """A size of stress: that at the start, or what a small strain makes of nothing."""
+    """Scale of stress: that at the start, or what a small strain makes of nothing."""
     probe = element.step(state, np.array([[-1e-3, -2e-3, 0.0]]))[0]
     return float(max(np.abs(state.sigma).max(), np.abs(probe.sigma).max()))
 
@@ -181,13 +181,13 @@ def moves(test: ElementTest, steps: int) -> Floats:
         return np.diff([np.interp(line, np.arange(test.legs + 1), column) for column in test.points.T], axis=1).T
     strains = [condition for condition in test.conditions if condition.of == "strain"]
     weights = np.array([condition.weights for condition in strains])
-    unit = np.linalg.lstsq(weights, np.array([condition.share for condition in strains]), rcond=None)[0]
+    unit = np.linalg.lstsq(weights, np.array([condition.fraction for condition in strains]), rcond=None)[0]
     increments: Floats = np.diff(test.gone(steps))[:, None] * unit
     return increments
 
 
 def control(test: ElementTest, before: State, move: Floats) -> Callable[[Floats, State], Floats]:
-    """The residuals of one step."""
+    """Residuals of one step, as a function of its strain increment and of the state at its end."""
     weights = np.array([condition.weights for condition in test.conditions])
     strains = np.array([condition.of == "strain" for condition in test.conditions])
     wanted = weights @ move
@@ -200,12 +200,12 @@ def control(test: ElementTest, before: State, move: Floats) -> Callable[[Floats,
 
 
 def scales(test: ElementTest, move: Floats, size: float) -> Floats:
-    """Sizes of the residuals."""
+    """Scales of the residuals (3,)."""
     return np.array([np.abs(move).max() if condition.of == "strain" else size for condition in test.conditions])
 
 
 def finite(state: State) -> State:
-    """The state; ElementFailed where its stress is not finite."""
+    """Give the state back; ElementFailed where its stress is not finite."""
     if not np.isfinite(state.sigma).all():
         raise ElementFailed(ElementFailure.NOT_FINITE)
     return state

@@ -1,4 +1,4 @@
-"""What an element test is and gives: its axes, and what its study in the strain step has found."""
+"""Run and Result of an element test: its axes, and what its study in the strain step has found."""
 
 from dataclasses import dataclass
 
@@ -12,10 +12,10 @@ __all__ = ["AXES", "CONFINED", "PATH", "PROPERTIES", "ElementResult", "ElementRu
 
 @dataclass(frozen=True, kw_only=True)
 class ElementResult(ResultRecord[ElementRun]):
-    """What one test gave; curves are in the arrays, `curve/NAME` and `exact/NAME`.
+    """Outcome of one test; curves are in the arrays, `curve/NAME` and `exact/NAME`.
 
     `source` of the exact curve, `stopped` where the test ends early, errors at the end by number of steps in
-    `step_errors` and `counts`, what was read of a path's file, and of the material's own properties the checks.
+    `step_errors` and `counts`, what was read of a path's file, and for `properties` the checks of the material.
     """
 
     run: ElementRun

@@ -1,4 +1,4 @@
-"""One element test of a material in a study of its strain step: the errors at each number of steps, and the order."""
+"""Study of the strain step of one element test: the errors at each number of steps, and the order."""
 
 from dataclasses import dataclass
 from math import log2
@@ -17,7 +17,7 @@ ROUND_OFF = 1e-9  # relative errors below it have no order
 
 @dataclass(frozen=True)
 class ElementStudy:
-    """One test: its curve, the exact one and its source, the errors at each number of steps, and the last order.
+    """Study of one test: its curve, the exact one and its source, errors at each number of steps, and order.
 
     `curve` is empty where it cannot be read; an exact curve is known where `source` says what it is.
     """
@@ -32,20 +32,20 @@ class ElementStudy:
 
     @property
     def order(self) -> float:
-        """Between the two finest that are above round-off; NaN where there are none.
+        """Order between the two finest that are above round-off; not a number where there are none.
 
-        Against the test's own curve the last is left out: a quarter of that curve's steps shares too much of its error.
+        Against the test's own curve the last is left out: a quarter of that curve's steps has too much of its error.
         """
         seen = [error for error in (self.errors if self.source else self.errors[:-1]) if error > ROUND_OFF]
         return log2(seen[-2] / seen[-1]) if len(seen) > 1 else float("nan")
 
 
-def study(law: Any, test: ElementTest, stress: float, steps: int) -> ElementStudy:
-    """The test with once, twice, ... sixteen times the steps."""
-    element, begin = Element(law), start(law, test, stress)
+def study(material: Any, test: ElementTest, stress: float, steps: int) -> ElementStudy:
+    """Run the test with once, twice, ... sixteen times the steps."""
+    element, begin = Element(material), start(material, test, stress)
     counts = tuple(n * test.steps(steps) for n in DOUBLED)
     runs = [follow(element, test, n, begin) for n in counts]
-    known = exact(law, test, stress)
+    known = exact(material, test, stress)
     truth, source = known or (None, "")
     if truth is None and not any(run.failed for run in runs):
         finest = follow(element, test, FINE * counts[0], begin)
@@ -57,7 +57,7 @@ def study(law: Any, test: ElementTest, stress: float, steps: int) -> ElementStud
 
 
 def first_failure(runs: list[Followed]) -> Stopped | None:
-    """Why the finest run of those that ended early did."""
+    """Failure of the finest run of those that ended early."""
     return next((run.failed for run in reversed(runs) if run.failed), None)
 
 

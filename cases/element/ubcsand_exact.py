@@ -1,6 +1,6 @@
 """Closed forms of UBCSAND in primary loading, compression positive, contraction positive; s and stresses in Pa.
 
-They take the law for its parameters alone. a = Rf/eta_f, k = Gp(s)/s; c = 0 and s above its floor are assumed.
+They take the material for its parameters alone. a = Rf/eta_f, k = Gp(s)/s; c = 0 and s above its floor are assumed.
 """
 
 from math import log
@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 
 from mpm_verify.solver.material.ubcsand import Ubcsand
 
-# Oedometric loading from s = 50 Pa by the law itself: vertical stress, K0, eta, vertical strain, to the digits given.
+# Oedometric loading from s = 50 Pa by the material: vertical stress, K0, eta, vertical strain, to the digits given.
 # Independent of this solver; Table 2 with the default Rf.
 OEDOMETRIC = (
     (100.0, 0.774, 0.128, 0.00058),
@@ -43,53 +43,53 @@ BIAXIAL = (
 ETA_AT_TWO_PERCENT = 0.30674886089  # s = 5 kPa, total shear strain 0.02
 
 
-def hardening(law: Ubcsand, s: float) -> float:
-    """k = Gp/s."""
-    return float(law.KGp * (s / law.Pa) ** (law.np - 1))
+def hardening(material: Ubcsand, s: float) -> float:
+    """Hardening k = Gp/s."""
+    return float(material.KGp * (s / material.Pa) ** (material.np - 1))
 
 
-def plastic_shear(law: Ubcsand, s: float, eta: float) -> float:
-    """gamma_p at constant s from eta = 0: eta/(1 - a eta) = k gamma_p."""
-    return eta / (1 - law.Rf / law.eta_f * eta) / hardening(law, s)
+def plastic_shear(material: Ubcsand, s: float, eta: float) -> float:
+    """Plastic shear gamma_p at constant s from eta = 0: eta/(1 - a eta) = k gamma_p."""
+    return eta / (1 - material.Rf / material.eta_f * eta) / hardening(material, s)
 
 
-def plastic_volume(law: Ubcsand, s: float, eta: float) -> float:
-    """eps_v_p on the same path. Raises ValueError for Rf = 0."""
-    if not law.Rf > 0:
+def plastic_volume(material: Ubcsand, s: float, eta: float) -> float:
+    """Plastic volume strain eps_v_p on the same path. Raises ValueError for Rf = 0."""
+    if not material.Rf > 0:
         raise ValueError("the closed form needs Rf above zero")
-    a = law.Rf / law.eta_f
+    a = material.Rf / material.eta_f
     rest = 1 - a * eta
-    return (law.eta_cv * eta / rest - (log(rest) + 1 / rest - 1) / a**2) / hardening(law, s)
+    return (material.eta_cv * eta / rest - (log(rest) + 1 / rest - 1) / a**2) / hardening(material, s)
 
 
-def elastic_shear(law: Ubcsand, s: float, eta: float) -> float:
-    """gamma_e = t/G."""
-    return eta * s / law.moduli(s)[0]
+def elastic_shear(material: Ubcsand, s: float, eta: float) -> float:
+    """Elastic shear gamma_e = t/G."""
+    return eta * s / material.moduli(s)[0]
 
 
-def ratio_at(law: Ubcsand, s: float, gamma: float) -> float:
-    """eta at a total shear strain, constant s; eta_f beyond the strain that reaches it."""
+def ratio_at(material: Ubcsand, s: float, gamma: float) -> float:
+    """Mobilised ratio eta at a total shear strain, constant s; eta_f beyond the strain that reaches it."""
 
     def left(eta: float) -> float:
-        return plastic_shear(law, s, eta) + elastic_shear(law, s, eta) - gamma
+        return plastic_shear(material, s, eta) + elastic_shear(material, s, eta) - gamma
 
-    return law.eta_f if left(law.eta_f) <= 0 else float(brentq(left, 0.0, law.eta_f, xtol=1e-15))
-
-
-def volume_at(law: Ubcsand, s: float, gamma: float) -> float:
-    """eps_v_p at a total shear strain, constant s; beyond failure it dilates at a constant rate."""
-    eta = ratio_at(law, s, gamma)
-    beyond = gamma - elastic_shear(law, s, eta) - plastic_shear(law, s, eta)
-    return plastic_volume(law, s, eta) + (law.eta_cv - law.eta_f) * max(0.0, beyond)
+    return material.eta_f if left(material.eta_f) <= 0 else float(brentq(left, 0.0, material.eta_f, xtol=1e-15))
 
 
-def biaxial(law: Ubcsand, s3: float, eta: float) -> tuple[float, float]:
-    """gamma and eps_v of drained biaxial compression at constant s3 up to eta <= eta_f, by quadrature."""
+def volume_at(material: Ubcsand, s: float, gamma: float) -> float:
+    """Plastic volume strain at a total shear strain, constant s; beyond failure it dilates at a constant rate."""
+    eta = ratio_at(material, s, gamma)
+    beyond = gamma - elastic_shear(material, s, eta) - plastic_shear(material, s, eta)
+    return plastic_volume(material, s, eta) + (material.eta_cv - material.eta_f) * max(0.0, beyond)
+
+
+def biaxial(material: Ubcsand, s3: float, eta: float) -> tuple[float, float]:
+    """Strains gamma and eps_v of drained biaxial compression at constant s3 up to eta <= eta_f, by quadrature."""
 
     def moduli(e: float) -> tuple[float, float, float, float]:
         s = s3 / (1 - e)
-        G, K = law.moduli(s)
-        return s3 / (1 - e) ** 2, G, K, 1 / (hardening(law, s) * (1 - law.Rf / law.eta_f * e) ** 2)
+        G, K = material.moduli(s)
+        return s3 / (1 - e) ** 2, G, K, 1 / (hardening(material, s) * (1 - material.Rf / material.eta_f * e) ** 2)
 
     def shear(e: float) -> float:
         rate, G, _, slip = moduli(e)
@@ -97,20 +97,20 @@ def biaxial(law: Ubcsand, s3: float, eta: float) -> tuple[float, float]:
 
     def volume(e: float) -> float:
         rate, G, K, slip = moduli(e)
-        return rate / (K + G / 3) + (law.eta_cv - e) * slip
+        return rate / (K + G / 3) + (material.eta_cv - e) * slip
 
     both = [quad(f, 0.0, eta, epsabs=1e-14, epsrel=1e-12)[0] for f in (shear, volume)]
     return float(both[0]), float(both[1])
 
 
-def isotropic(law: Ubcsand, s0: float, volume: float) -> float:
-    """s after isotropic compression in the plane by `volume` from s0: ds = (K + G/3) d eps_v, no plastic strain.
+def isotropic(material: Ubcsand, s0: float, volume: float) -> float:
+    """Mean stress s after compression in the plane by `volume` from s0: ds = (K + G/3) d eps_v, no plastic strain.
 
-    In closed form where ne = me, as in Table 2. Raises ValueError otherwise.
+    The form is closed where ne = me, as in Table 2. Raises ValueError otherwise.
     """
-    if law.ne != law.me:
+    if material.ne != material.me:
         raise ValueError("the closed form needs ne = me")
-    stiff = (law.KBe + law.KGe / 3) * law.Pa ** (1 - law.ne)
-    if law.ne == 1:
+    stiff = (material.KBe + material.KGe / 3) * material.Pa ** (1 - material.ne)
+    if material.ne == 1:
         return float(s0 * np.exp(stiff * volume))
-    return float((s0 ** (1 - law.ne) + (1 - law.ne) * stiff * volume) ** (1 / (1 - law.ne)))
+    return float((s0 ** (1 - material.ne) + (1 - material.ne) * stiff * volume) ** (1 / (1 - material.ne)))

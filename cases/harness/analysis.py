@@ -1,4 +1,4 @@
-"""What a study says once it has run: verdicts of the order rule, checks of the case, and the exit code of both."""
+"""Analysis of a study that has run: verdicts of the order rule, checks of the case, and the exit code of both."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ EXIT = {Outcome.PASS: 0, Outcome.FAIL: 1, Outcome.INCONCLUSIVE: 3, Outcome.ERROR
 
 @dataclass(frozen=True)
 class Analysis:
-    """`findings` of the order rule, `checks` of the case, and `more`: all that the case found, None without checks."""
+    """Verdicts and checks: `findings` of the order rule, `checks` of the case, `more` all that it found, or None."""
 
     findings: tuple[Finding, ...] = ()
     checks: tuple[Check, ...] = ()
@@ -29,12 +29,12 @@ class Analysis:
 
     @property
     def outcome(self) -> Outcome:
-        """The worst of them, a FAIL before an ERROR; INCONCLUSIVE where nothing is judged."""
+        """Worst of the outcomes, a FAIL before an ERROR; INCONCLUSIVE where nothing is judged."""
         return worst(self.outcomes)
 
     @property
     def exit_code(self) -> int:
-        """0 pass, 1 fail, 3 inconclusive or nothing judged, 4 nothing could be judged, as runs ended in error."""
+        """Exit code: 0 pass, 1 fail, 3 inconclusive or nothing judged, 4 nothing to judge, as runs ended in error."""
         return EXIT[self.outcome]
 
 

@@ -1,4 +1,4 @@
-"""The axes of a study beside the cells: time step, particles per cell, and where the particles lie in their cells.
+"""Axes of a study beside the cells: time step, particles per cell, and positions of the particles in their cells.
 
 Each is refined with the others held, so that each error is seen alone. All from finished runs; a study with one value
 on an axis has nothing there.
@@ -37,8 +37,8 @@ class TimeAxis:
         return slopes(self.courants, self.errors)
 
     @property
-    def shares(self) -> tuple[float, ...]:
-        """What the time step makes of each error, (n,): |e(dt) - e(smallest dt)| / e(dt)."""
+    def fractions(self) -> tuple[float, ...]:
+        """Fraction of each error that the time step makes, (n,): |e(dt) - e(smallest dt)| / e(dt)."""
         return tuple(abs(e - self.errors[-1]) / e if e else 0.0 for e in self.errors)
 
 
@@ -58,7 +58,7 @@ class ParticleAxis:
 
 @dataclass(frozen=True)
 class PositionAxis:
-    """Errors of the replicates of one series; `cells` (n,), `errors` n tuples, the usual place first in each."""
+    """Errors of the replicates of one series; `cells` (n,), `errors` n tuples, the usual position first in each."""
 
     run: Run  # the coarsest one
     cells: tuple[int, ...]
@@ -71,12 +71,12 @@ class PositionAxis:
 
     @property
     def alone(self) -> Fit:
-        """The fit of the usual places only: its interval comes from the residuals."""
+        """Fit of the usual positions alone: its interval comes from the residuals."""
         return self._fit([e[:1] for e in self.errors])
 
     @property
     def together(self) -> Fit:
-        """The fit of all replicates: its interval comes from their scatter."""
+        """Fit of all replicates: its interval comes from their scatter."""
         return self._fit(self.errors)
 
     def _fit(self, errors: Sequence[Sequence[float]]) -> Fit:
@@ -84,7 +84,7 @@ class PositionAxis:
 
 
 def time_axes(runs: Sequence[Run], results: Results, quantity: str = "u", norm: str = "rms") -> list[TimeAxis]:
-    """One a series that has two finished time steps or more."""
+    """Time axes, one for each series with two finished time steps or more."""
     found = []
     for series in collect(runs):
         pairs = [(run, e) for run in series.times if (e := error(run, results, quantity, norm)) is not None]
@@ -94,7 +94,7 @@ def time_axes(runs: Sequence[Run], results: Results, quantity: str = "u", norm: 
 
 
 def particle_axes(runs: Sequence[Run], results: Results, quantity: str = "u", norm: str = "rms") -> list[ParticleAxis]:
-    """One a method, solution and cell count that finished with two particle counts or more."""
+    """Particle axes, one for each method, solution and cell count that finished with two particle counts or more."""
     points: dict[tuple[Head, int], list[tuple[Run, float]]] = {}
     for series in collect(runs):
         for run, errors in zip(series.runs, replicated(series, results, quantity, norm), strict=True):
@@ -108,7 +108,7 @@ def particle_axes(runs: Sequence[Run], results: Results, quantity: str = "u", no
 
 
 def position_axes(runs: Sequence[Run], results: Results, quantity: str = "u", norm: str = "rms") -> list[PositionAxis]:
-    """One a series whose replicates have all finished on some level, with those levels."""
+    """Position axes, one for each series whose replicates have all finished on some level, with those levels."""
     found = []
     for series in collect(runs):
         levels = zip(series.runs, replicated(series, results, quantity, norm), strict=True)
@@ -143,7 +143,7 @@ def level(
 
 
 def error(run: Run, results: Results, quantity: str, norm: str) -> float | None:
-    """An error of a finished run, None where there is none."""
+    """Error of a finished run, None where there is none."""
     result = results.get(run.digest)
     return result.errors.get(quantity, {}).get(norm) if result and result.status == "finished" else None
 
@@ -155,6 +155,6 @@ def middle(errors: Sequence[float]) -> float:
     return exp(sum(map(log, errors)) / len(errors))
 
 
-def crossed(result: Result | None) -> float | None:
-    """Faces of cells that a particle passed in the whole run, on average; None where the run is not done."""
+def cell_crossings(result: Result | None) -> float | None:
+    """Mean number of cell faces that a particle crossed in the whole run; None where the run is not done."""
     return result.crossings / result.particles if result and result.particles else None

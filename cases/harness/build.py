@@ -1,4 +1,4 @@
-"""A study from what is asked for: a case, values of its axes, and how many replicates; checked before anything runs."""
+"""Construction of a study from a case, values of its axes and a number of replicates, checked before anything runs."""
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
@@ -21,7 +21,19 @@ FIRST = ("method", "solution", "material")  # axes whose values begin the name o
 
 @dataclass(frozen=True)
 class Asked:
-    """What is asked for: values by the name of a field of the case's Run, and `replicates` of each point."""
+    """Request for a study, or for one part of it.
+
+    Parameters
+    ----------
+    case
+        Name of a case, a folder of `cases/`.
+    values
+        Values of the axes by the name of a field of the case's Run; other fields have their usual values.
+    replicates
+        Runs of each point of a refinement, with the particles elsewhere in their cells.
+    quick
+        Whether axes that are not given have the values of the case's QUICK.
+    """
 
     case: str
     values: Values
@@ -30,14 +42,34 @@ class Asked:
 
     @property
     def contract(self) -> Case:
-        """The case."""
+        """Contract of the case."""
         return case_named(self.case)
 
 
 def build(
     asked: Asked, command: str, name: str = "", title: str = "", words: Sequence[str] = (), finish: int | None = None
 ) -> Study[Any]:
-    """The study of one product of axes. Raises ValueError with one line for what cannot be run."""
+    """Build the study of one product of axes.
+
+    Parameters
+    ----------
+    asked
+        Case, values of its axes and number of replicates.
+    command
+        Command that repeats the study.
+    name, title, words, finish
+        See `union`.
+
+    Returns
+    -------
+    Study
+        Its runs, and the plans of the quantities that it judges or shows.
+
+    Raises
+    ------
+    ValueError
+        One line that says what cannot be run, and what to type instead.
+    """
     return union([asked], command, name, title, words, finish)
 
 
@@ -49,14 +81,40 @@ def union(
     words: Sequence[str] = (),
     finish: int | None = None,
 ) -> Study[Any]:
-    """The study of several products of axes of one case. Raises ValueError with one line for what cannot be run."""
+    """Build the study of several products of axes of one case.
+
+    Parameters
+    ----------
+    parts
+        One request or more, all of the same case.
+    command
+        Command that repeats the study.
+    name
+        Name of its folder; made of the case and of the values that are not usual if empty.
+    title
+        Title; that of the case if empty.
+    words
+        Sentences that say what the study is for.
+    finish
+        Number of runs that must come to their end, of a case that counts them; all of them if None.
+
+    Returns
+    -------
+    Study
+        Each run once, in the order of the parts, and the plans of the quantities that it judges or shows.
+
+    Raises
+    ------
+    ValueError
+        One line that says what cannot be run, and what to type instead.
+    """
     case = parts[0].contract
     runs: list[RunRecord] = []
     plans: list[QuantityPlan[Any]] = []
     for part in (one for whole in parts for one in case.parts(whole)):
-        more, declared = _runs(part)
+        more, planned = _runs(part)
         runs += more
-        plans += declared
+        plans += planned
     once = tuple(dict.fromkeys(runs))
     unique: dict[Any, QuantityPlan[Any]] = {}
     for plan in plans:
@@ -90,7 +148,7 @@ def _runs(asked: Asked) -> tuple[tuple[Any, ...], list[QuantityPlan[Any]]]:
     times: list[float] = []
     if case.quantities and refines(case.Run):
         if len(values.get("offset", ())) > 1:
-            raise ValueError("offset: give one; replicates shift the particles of a refinement")
+            raise ValueError("offset takes one value in a refinement; give --replicates to shift the particles")
         first, *times = values.get("courant") or [_default(case, "courant")]
         if any(courant > first for courant in times):
             raise ValueError(f"courant = {max(times)} is above the first, {first}; begin with the largest: 0.4,0.2,0.1")
@@ -110,14 +168,14 @@ def _runs(asked: Asked) -> tuple[tuple[Any, ...], list[QuantityPlan[Any]]]:
     case.check((*runs, *smaller))
     if not (case.quantities and refines(case.Run)):
         return tuple(dict.fromkeys(case.companions(runs))), []
-    plans = [plan for one in {head(run): run for run in reversed(runs)}.values() for plan in declare(case, one)]
-    rank = {head(run): place for place, run in reversed(list(enumerate(runs)))}
+    plans = [plan for one in {head(run): run for run in reversed(runs)}.values() for plan in quantity_plans(case, one)]
+    rank = {head(run): position for position, run in reversed(list(enumerate(runs)))}
     plans.sort(key=lambda plan: rank[plan.head])
     return complete(runs, plans, times, asked.replicates), plans
 
 
-def declare(case: Case, run: RunRecord) -> list[QuantityPlan[Any]]:
-    """What is declared of a refinement: every quantity in every norm, judged where something is registered."""
+def quantity_plans(case: Case, run: RunRecord) -> list[QuantityPlan[Any]]:
+    """Plans of a refinement: every quantity in every norm, judged where an expectation is registered."""
     found, multiple = [], case.multiple(run)
     for quantity in case.quantities:
         for norm in case.norms:
@@ -128,13 +186,13 @@ def declare(case: Case, run: RunRecord) -> list[QuantityPlan[Any]]:
 
 
 def make(case: Case, values: Mapping[str, Any]) -> RunRecord:
-    """One run. Raises ValueError with one line for a value that it cannot have."""
+    """Make one run. Raises ValueError with one line for a value that it cannot have."""
     checked = {key: read(case.Run, key, value) for key, value in values.items()}
     return case.Run(**case.canonical(checked))
 
 
 def read(run: type[RunRecord], key: str, value: Any) -> Any:
-    """The value of a field as a TOML file has it. Raises ValueError for one of another kind: true is no number here."""
+    """Value of a field as a TOML file has it. Raises ValueError for another type: true is not a number here."""
     hint = get_type_hints(run)[key]
     try:
         return TypeAdapter(hint).validate_python(tuple(value) if isinstance(value, list) else value, strict=True)

@@ -1,4 +1,4 @@
-"""Checks: numbers held against what is known; and what a case examined, with curves to draw and remarks."""
+"""Checks, numbers held against what is known; and Examinations of a case, with curves to draw and remarks."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -17,8 +17,9 @@ Curves = dict[str, dict[str, Floats]]
 class Check:
     """A number `found` and what it is held against.
 
-    `way`: found within `within` of `expected`, as a share of it or absolutely, or a bound that `expected` is. A number
-    that is not finite is an ERROR. `source` says where the expectation comes from, `group` which part it belongs to.
+    `way`: found within `within` of `expected`, as a fraction of it or absolutely, or a bound that `expected` is. A
+    number that is not finite is an ERROR. `source` says where the expectation comes from, `group` which part it
+    belongs to.
     """
 
     group: str
@@ -32,7 +33,7 @@ class Check:
 
     @property
     def miss(self) -> float:
-        """Distance of found from expected, as a share of it where that is how it is held."""
+        """Distance of found from expected, as a fraction of it where the check is relative."""
         distance = abs(self.found - self.expected)
         return distance / abs(self.expected) if self.way == "relative" else distance
 
@@ -62,7 +63,7 @@ class Remark:
 
 @dataclass(frozen=True)
 class Examination:
-    """What one command examined: checks, and as `findings` what came out and what one should know of each group.
+    """Examination by one command: checks, and as `findings` what came out and what one should know of each group.
 
     `origins`: by parameter, a code for where its value comes from or what it does, `case.what` too.
     """

@@ -1,4 +1,4 @@
-"""The contract of a case, and the way to it by its name: `cases/<name>/case.py` is found, no list holds it.
+"""Contract of a case, and the way to it by its name: `cases/<name>/case.py` is found, no list holds it.
 
 A user's case is one file, path/to/own.py, that has the names of both modules.
 
@@ -38,7 +38,15 @@ REFINES = ("method", "cells", "ppc", "courant", "offset")  # fields of a Run who
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """A case by its module; what the module does not say has a default here."""
+    """Case by its module; what the module does not say has a default here.
+
+    Parameters
+    ----------
+    name
+        Name of its folder below `cases/`.
+    module
+        The module `cases/<name>/case.py`.
+    """
 
     name: str
     module: Any
@@ -65,7 +73,7 @@ class Case:
 
     @property
     def quantities(self) -> tuple[str, ...]:
-        """Quantities whose errors refine, none of a case that is no refinement study."""
+        """Quantities whose errors are refined; none of a case without refinements."""
         return getattr(self.module, "QUANTITIES", ())
 
     @property
@@ -80,48 +88,64 @@ class Case:
 
     @property
     def expectation(self) -> Callable[[RunRecord, str, str], Expectation | None]:
-        """What is registered of a quantity and norm of the refinement that a run belongs to."""
+        """Function (run, quantity, norm) -> registered expectation of the refinement of the run, or None."""
         return getattr(self.module, "expectation", lambda run, quantity, norm: None)
 
     @property
     def multiple(self) -> Callable[[RunRecord], int]:
-        """Number whose multiples are the cells that fit the body of a run."""
+        """Function (run) -> number whose multiples are the cells that fit the body of the run."""
         return getattr(self.module, "multiple", lambda run: 1)
 
     @property
     def parts(self) -> Callable[[Any], Sequence[Any]]:
-        """What is asked for (build.Asked) in parts, where what nobody asked for depends on what was."""
+        """Function (Asked) -> parts of it, where usual values of one axis depend on another axis."""
         return getattr(self.module, "parts", lambda asked: [asked])
 
     @property
     def companions(self) -> Callable[[Sequence[RunRecord]], Sequence[RunRecord]]:
-        """The runs with those that each of them is held against."""
+        """Function (runs) -> the runs with those that each of them is held against."""
         return getattr(self.module, "companions", lambda runs: runs)
 
     @property
     def canonical(self) -> Callable[[dict[str, Any]], dict[str, Any]]:
-        """One name for one thing: specifications without parameters that are at their defaults."""
+        """Function (values) -> values with one name for one thing: no parameters that are at their defaults."""
         return getattr(self.module, "canonical", lambda values: values)
 
     @property
     def check(self) -> Callable[[Sequence[RunRecord]], None]:
-        """Raises ValueError for runs that cannot be."""
+        """Function (runs) that raises ValueError, with what to type instead, for runs that cannot be."""
         return getattr(self.module, "check", lambda runs: None)
 
     @property
     def examine(self) -> Callable[..., Any] | None:
-        """Checks of what is stored, where the case has some."""
+        """Function (study, results, store) -> checks of what is stored; None of a case without checks."""
         return getattr(self.module, "examine", None)
 
     @property
     def execute(self) -> Callable[..., Any]:
-        """A run to its end."""
+        """Function (run, tick) -> (Result, arrays): a run to its end, or to where it fails."""
         module = self.module if is_file(self.name) else import_module(f"{CASES}.{self.name}.execute")
         return module.execute  # type: ignore[no-any-return]
 
 
 def case_named(name: str) -> Case:
-    """The case of that name, or of a user's file. Raises ValueError that lists the cases, or says what a file lacks."""
+    """Find a case by its name.
+
+    Parameters
+    ----------
+    name
+        Name of a folder below `cases/` that has a `case.py`, or a user's file, path/to/own.py.
+
+    Returns
+    -------
+    Case
+        The same object for the same name, as long as a file is not changed.
+
+    Raises
+    ------
+    ValueError
+        One line that lists the cases there are, or says what a file lacks.
+    """
     if is_file(name):
         return _own(name, module_of(Path(name)))
     if name not in available(CASES):

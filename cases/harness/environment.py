@@ -1,4 +1,4 @@
-"""Where a Result came from: versions, commit, processor."""
+"""Environment of a Result: versions, commit, processor."""
 
 import platform
 import subprocess
@@ -34,7 +34,7 @@ def commit() -> str:
 
 
 def git(*arguments: str) -> str:
-    """What git prints, run in the folder of the sources."""
+    """Output of git, run in the folder of the sources."""
     run = ["git", "-C", str(TOP), *arguments]
     return subprocess.run(run, capture_output=True, text=True, check=True, timeout=10).stdout.strip()
 

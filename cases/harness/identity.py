@@ -31,7 +31,7 @@ from mpm_verify.solver.source_hash import closure, source_hash
 
 
 def digest(run: Any, plugins: Mapping[str, str], more: str = "") -> str:
-    """16 hex digits. `plugins`: the package of each field that names a plug-in; `more`: what else counts."""
+    """Digest of a run, 16 hex digits. `plugins`: package of each field that names one; `more`: what else counts."""
     return _digest(run, tuple(plugins), sources(run, plugins) + more)
 
 
@@ -46,7 +46,7 @@ def _digest(run: Any, plugins: tuple[str, ...], computed_by: str) -> str:
 
 
 def sources(run: Any, plugins: Mapping[str, str]) -> str:
-    """Hash of all that computes the run."""
+    """Source hash of all that computes the run."""
     own = is_file(run.case)
     parts = [derived(Path(run.case)) if own else source_hash(f"mpm_verify.cases.{run.case}.execute")]
     parts += [identity(package, getattr(run, field)) for field, package in plugins.items()]
@@ -54,7 +54,7 @@ def sources(run: Any, plugins: Mapping[str, str]) -> str:
 
 
 def identity(package: str, specification: str) -> str:
-    """Hash of what computes a plug-in. A user's file that cannot be read any more has one that no other has."""
+    """Source hash of a plug-in. A user's file that cannot be read any more has one that no other has."""
     if not is_file(specification):
         return _shipped(package, specification)
     try:
@@ -77,7 +77,7 @@ def _shipped(package: str, specification: str) -> str:
 
 @cache
 def _own(package: str, specification: str, plugin: type) -> str:
-    """Of a user's file: asked for once for each time that it was executed."""
+    """Hash of a user's file, asked for once for each time that it was executed."""
     made = create(package, specification)
     if package == SOLUTIONS:
         own = import_module(f"{SOLUTIONS}._own")

@@ -1,4 +1,4 @@
-"""How much memory a run took."""
+"""Memory that a run took."""
 
 import resource
 import sys

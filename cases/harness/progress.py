@@ -1,4 +1,4 @@
-"""How far a run has come, told after each step."""
+"""Progress of a run, told after each step."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -8,11 +8,11 @@ from mpm_verify.solver.model import Model, Observer
 
 @dataclass
 class Progress(Observer):
-    """Calls `tick` with the fraction of `steps` that is done."""
+    """Observer that calls `tick` with the fraction of `steps` that is done."""
 
     tick: Callable[[float], None]
     steps: int
 
     def after_step(self, model: Model) -> None:
-        """Tell it."""
+        """Tell the fraction."""
         self.tick(model.steps / self.steps)

@@ -1,7 +1,7 @@
-"""The runs of a study in order: each refinement in space, its replicates, and its runs with smaller time steps.
+"""Runs of a study in order: each refinement in space, its replicates, and its runs with smaller time steps.
 
-A refinement is of all fields of a Run but the cells, the time step and where the particles lie in their cells; these
-three are refined apart from each other. A case has refinements if its Run has all three fields.
+A refinement is of all fields of a Run but the cells, the time step and the positions of the particles in their cells;
+these three are refined apart from each other. A case has refinements if its Run has all three fields.
 """
 
 from collections.abc import Sequence
@@ -34,7 +34,7 @@ class Series:
 
     @property
     def head(self) -> Head:
-        """What the refinement is of."""
+        """All fields that the runs of the refinement share."""
         return head(self.first)
 
     @property

@@ -1,4 +1,4 @@
-"""A study that a folder already holds, where the same code was asked for the same: it need not be derived again."""
+"""Reuse of a study that a folder holds, where the same code was asked for the same: it need not be derived again."""
 
 import hashlib
 import os
@@ -15,7 +15,7 @@ ROOMS = ("solver", "mms", "cases")  # all that builds a study
 
 
 def study(asked: Asked, command: str, folder: Path) -> Study[Any]:
-    """The study that is asked for: the one in the folder, if it is the same, or a new one.
+    """Study that is asked for: the one in the folder, if it is the same, or a new one.
 
     Raises ValueError with one line for what cannot be run.
     """

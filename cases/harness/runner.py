@@ -1,4 +1,4 @@
-"""Takes each run that the store does not hold yet, on any executor; what fails is a result and the sweep goes on."""
+"""Runner: takes each run that the store does not hold yet, on any executor; a failed run is a Result like any other."""
 
 import multiprocessing
 import os
@@ -25,7 +25,7 @@ Study = Any
 
 
 class RunnerError(Exception):
-    """The runs cannot go on, for a reason outside them; one line. `defect` says that the reason is in this program."""
+    """Error outside the runs that stops them, in one line. `defect` says that the reason is in this program."""
 
     def __init__(self, message: str, defect: bool = False) -> None:
         super().__init__(message)
@@ -44,7 +44,7 @@ def pending(study: Study, store: Store) -> list[Run]:
 
 
 def perform(run: Run, digest: str, folder: Path, threads: int) -> Result:
-    """One run, in whichever process this is, to its place in the store. Memory that does not suffice is not stored.
+    """Run one run in this process and store its Result; not enough memory is not stored.
 
     Raises RunnerError where a user's file does not return what it did when the run was named `digest`, before or after.
     """
@@ -61,7 +61,7 @@ def perform(run: Run, digest: str, folder: Path, threads: int) -> Result:
 
 
 def another(run: Run) -> RunnerError:
-    """The reason not to store a run."""
+    """Error of a run that is not stored, as what computes it has changed."""
     return RunnerError(
         f"what computes {run} is not what it was when the study began: a file was changed, or returns something else "
         "each time it is read; make it return the same and start again; stored runs are kept"
@@ -69,7 +69,7 @@ def another(run: Run) -> RunnerError:
 
 
 class Ticker:
-    """Tells how far a run is, a few times a second at most, to whoever listens: `tell` of this process."""
+    """Listener of a run that tells its progress, a few times a second at most, to `tell` of this process."""
 
     tell: ClassVar[Callable[[tuple[str, float]], None]] = staticmethod(lambda news: None)
     PAUSE = 0.25  # seconds
@@ -77,12 +77,12 @@ class Ticker:
     def __init__(self, digest: str) -> None:
         self.digest, self.last = digest, time.monotonic()
 
-    def __call__(self, share: float) -> None:
-        """The run has done this share of its steps."""
+    def __call__(self, fraction: float) -> None:
+        """Tell that the run has done this fraction of its steps."""
         now = time.monotonic()
         if now - self.last > self.PAUSE:
             self.last = now
-            type(self).tell((self.digest, share))
+            type(self).tell((self.digest, fraction))
 
 
 def run_study(
@@ -93,13 +93,13 @@ def run_study(
     done: Callable[[Result], None] = lambda result: None,
     poll: Callable[[], None] = lambda: None,
 ) -> dict[str, Result]:
-    """All Results of the study by digest; those that are stored are read, the others run.
+    """Results of the study by digest; those that are stored are read, the others run.
 
     `done` hears of each new Result, `poll` is called a few times a second. Raises RunnerError where a worker dies,
     StoreError where a Result cannot be written; what is stored stays.
     """
     waiting = {executor.submit(perform, run, run.digest, store.folder, threads): run for run in pending(study, store)}
-    lost: list[tuple[Run, Exception]] = []
+    defects: list[tuple[Run, Exception]] = []
     try:
         while waiting:
             finished, _ = wait(waiting, timeout=Ticker.PAUSE, return_when=FIRST_COMPLETED)
@@ -111,15 +111,15 @@ def run_study(
                 except (StoreError, RunnerError, BrokenProcessPool, MemoryError):
                     raise
                 except Exception as error:  # a defect of ours in one run: the sweep goes on, and says so at its end
-                    lost.append((run, error))
+                    defects.append((run, error))
     except BrokenProcessPool as error:
         raise RunnerError(
             "a worker process died, perhaps for want of memory; try --jobs 1; stored runs are kept"
         ) from error
     except MemoryError as error:
         raise RunnerError("not enough memory; try --jobs 1 or fewer cells; stored runs are kept") from error
-    if lost:
-        (run, defect), more = lost[0], f", and in {len(lost) - 1} more" if lost[1:] else ""
+    if defects:
+        (run, defect), more = defects[0], f", and in {len(defects) - 1} more" if defects[1:] else ""
         if is_file(run.case):
             raise RunnerError(f"{defect}; this was the run {run}{more}; the other runs are stored") from defect
         raise RunnerError(f"a defect of verify in {run}{more}: {defect!r}; the other runs are stored", True) from defect
@@ -127,10 +127,10 @@ def run_study(
 
 
 class InProcess(Executor):
-    """Runs what is submitted at once, here."""
+    """Executor that runs what is submitted at once, in this process."""
 
     def submit(self, fn: Callable[..., T], /, *args: Any, **kwargs: Any) -> Future[T]:
-        """A future that is done."""
+        """Run the function; the future is done."""
         future: Future[T] = Future()
         try:
             future.set_result(fn(*args, **kwargs))
@@ -140,7 +140,7 @@ class InProcess(Executor):
 
 
 def stored(study: Study, store: Store) -> dict[str, Result]:
-    """The Results that the store holds for the study."""
+    """Results that the store holds for the study, by digest."""
     found = ((run.digest, store.get(run.digest)) for run in study.runs)
     return {digest: result for digest, result in found if result is not None}
 
@@ -173,7 +173,7 @@ def process_pool(jobs: int, case: str) -> Iterator[tuple[ProcessPoolExecutor, Ca
 
 
 def begin(parent: int, news: "Queue[tuple[str, float]]", case: str) -> None:
-    """First thing in a worker: where to tell news, a watch over the parent, and the records that come from a file.
+    """Begin a worker: where to tell news, a watch over the parent, and the records that come from a file.
 
     A worker that outlived its parent would do a run that the parent's successor does too.
     """

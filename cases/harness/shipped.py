@@ -1,4 +1,4 @@
-"""Studies that ship: by file names, so that nothing heavy is imported to list or complete them."""
+"""Studies that ship, by file names, so that nothing heavy is imported to list or complete them."""
 
 import tomllib
 from pathlib import Path
@@ -13,7 +13,7 @@ def files() -> dict[str, Path]:
 
 
 def shipped() -> list[str]:
-    """Their names."""
+    """Names of the studies that ship."""
     return list(files())
 
 
@@ -23,6 +23,6 @@ def where(study: str) -> Path:
 
 
 def title(study: str) -> str:
-    """What a study calls itself."""
+    """Title of a study."""
     content: dict[str, Any] = tomllib.loads(where(study).read_text(encoding="utf-8"))
     return str(content["title"])

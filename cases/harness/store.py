@@ -31,11 +31,11 @@ BROKEN = "{} is broken and was left as it is; move it away, and what it held is 
 
 
 class StoreError(Exception):
-    """The folder cannot be read or written; the message is one line that says what to do."""
+    """Error of a folder that cannot be read or written; the message is one line that says what to do."""
 
 
 def make(folder: Path) -> None:
-    """The folder, new or there."""
+    """Make the folder, if it is not there."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -45,13 +45,13 @@ def make(folder: Path) -> None:
 
 
 def case_of(folder: Path) -> str:
-    """The case of the study that a folder holds. Raises StoreError where there is nothing that says so."""
+    """Case of the study that a folder holds. Raises StoreError where nothing says which."""
     path = folder / "study.json"
     try:
         data = json.loads(path.read_bytes())
         case, found = (data.get("case"), data.get("format")) if isinstance(data, dict) else (None, FORMAT)
     except FileNotFoundError as error:
-        raise StoreError(f"{folder} is no study folder: it holds no study.json") from error
+        raise StoreError(f"{folder} is not a study folder: it has no study.json; give the folder of a study") from error
     except (OSError, ValueError, RecursionError) as error:
         raise StoreError(BROKEN.format(path)) from error
     if found != FORMAT:
@@ -85,7 +85,7 @@ class Store:
         self.write(self.folder / "study.json", self._text(study))
 
     def study(self) -> Any:
-        """The study of this folder."""
+        """Study of this folder."""
         return self._read(self.folder / "study.json", adapters(self.case)[0])
 
     def put(self, result: Any, arrays: Arrays) -> None:
@@ -101,12 +101,12 @@ class Store:
         return json.dumps({"case": self.case} | asdict(record), indent=1).encode()
 
     def get(self, digest: str) -> Any:
-        """The stored Result of that name, None if the run is still to be done."""
+        """Stored Result of that digest, None if the run is still to be done."""
         path = self.runs / f"{digest}.json"
         return self._read(path, adapters(self.case)[1]) if path.exists() else None
 
     def arrays(self, digest: str) -> Arrays:
-        """The arrays of that run."""
+        """Arrays of that run by name."""
         path = self.runs / f"{digest}.npz"
         try:
             with path.open("rb") as file, np.load(file, allow_pickle=False) as stored:
@@ -127,7 +127,9 @@ class Store:
                 )
             return adapter.validate_python(data)
         except FileNotFoundError as error:
-            raise StoreError(f"{path.parent} is no study folder: it holds no {path.name}") from error
+            raise StoreError(
+                f"{path.parent} is not a study folder: it has no {path.name}; give the folder of a study"
+            ) from error
         except (OSError, ValueError, AttributeError, RecursionError, ValidationError) as error:
             raise StoreError(BROKEN.format(path)) from error
 
@@ -148,7 +150,7 @@ class Store:
 
     @staticmethod
     def write(path: Path, data: bytes) -> None:
-        """Atomic: a reader sees the old file or the whole new one, whenever the power goes."""
+        """Write a file atomically: a reader sees the old file or the whole new one, whenever the power goes."""
         try:
             temporary = path.with_name(f".{path.name}.{os.getpid()}.{threading.get_ident()}")
             try:

@@ -1,4 +1,4 @@
-"""What is run and what is expected of it: the records that every case has, written by the store and read by reports.
+"""Records that every case has, what is run and what is expected of it: written by the store and read by reports.
 
 A case adds its own fields: its Run is a frozen dataclass below RunRecord whose fields are the axes that a study can
 have, its Result one below ResultRecord (see cases/harness/contract.py).
@@ -21,16 +21,34 @@ Head = tuple[tuple[str, Any], ...]  # names and values of all other fields of a 
 
 
 def axis(default: Any, text: str, plugins: str = "", choices: tuple[str, ...] = ()) -> Any:
-    """A field of a Run: its default, what it is (help of its option), and what completes it.
+    """Declare a field of a Run, which can be an axis of a study.
 
-    That is the package whose plug-ins it names, or the words that it may be.
+    Parameters
+    ----------
+    default
+        Usual value.
+    text
+        What the field is: the help of its option.
+    plugins
+        Package whose plug-ins the field names; empty if it names none.
+    choices
+        Words that the field may be, which complete its option.
+
+    Returns
+    -------
+    dataclasses.Field
+        Default and metadata, from which options, TOML keys and documentation are made.
     """
     return field(default=default, metadata={"help": text, "plugins": plugins, "choices": choices})
 
 
 @dataclass(frozen=True)
 class RunRecord:
-    """One point of a study. A subclass says in `cost` what it takes and in `particles` how many there are."""
+    """One point of a study; the fields of a subclass are the axes that a study of its case can have.
+
+    A subclass says in `cost` what a run takes and in `particles` and `nodes` how large it is, and raises ValueError
+    with one line, which says what to type instead, for values that no run has.
+    """
 
     case: ClassVar[str]
 
@@ -40,7 +58,7 @@ class RunRecord:
         return self.named()
 
     def named(self, more: str = "") -> str:
-        """The digest; `more` is what else a run depends on."""
+        """Digest of the run; `more` is what else it depends on."""
         packages = {item.name: item.metadata["plugins"] for item in fields(self) if item.metadata.get("plugins")}
         return digest(self, packages, more)
 
@@ -70,13 +88,37 @@ R = TypeVar("R", bound=RunRecord)
 
 @dataclass(frozen=True, kw_only=True)
 class ResultRecord(Generic[R]):
-    """What one Run gave, in the units of the problem.
+    """Outcome of one Run, in the units of the problem.
 
-    `errors[quantity][norm]` are judged by the order rule, `values` are other numbers of the run. `scale` is the rms of
-    each exact quantity, `floor` its round-off floor. `cpu_s` is the processor time of the steps, all threads, with body
-    force and norms; `crossings` are the faces of cells that particles passed, `gap` is how far the corners of domains
-    are apart in spacings of particles (None where domains have none); `parameters` are those of the plug-ins.
-    Raises ValueError for errors of a finished run that are negative or not finite.
+    Parameters
+    ----------
+    run, digest
+        The Run, and its name in the store.
+    status
+        `finished`, or `failed` with a `failure`.
+    steps, particles, dt
+        Time steps taken, number of particles, length of a step.
+    wall_s, cpu_s, peak_memory_mb
+        Wall time and processor time of the steps in s (all threads, with body force and norms), peak memory in MB.
+    errors
+        `errors[quantity][norm]`, which the order rule judges; empty of a failed run.
+    values
+        Other numbers of the run by name.
+    scale, floor
+        By quantity: rms of the exact quantity, and its round-off floor.
+    crossings
+        Number of cell faces that particles crossed, summed over particles and steps.
+    gap
+        Distance of corners of domains that should coincide, in particle spacings; None where domains have no corners.
+    failure
+        What ended a failed run.
+    environment, parameters
+        Versions and machine; parameters of the plug-ins.
+
+    Raises
+    ------
+    ValueError
+        For errors of a finished run that are negative or not finite.
     """
 
     run: R
@@ -112,9 +154,20 @@ class ResultRecord(Generic[R]):
 
 @dataclass(frozen=True)
 class QuantityPlan(Generic[R]):
-    """A quantity that the study judges, or only shows, with what is expected of it; declared before the study runs.
+    """Plan of a quantity, made before the study runs: what is expected of it, and whether it is judged or only shown.
 
-    `run` is any run of the refinement that it is measured on.
+    Parameters
+    ----------
+    run
+        Any run of the refinement that the quantity is measured on.
+    quantity, norm
+        Keys of `ResultRecord.errors`.
+    judged
+        Whether the verdict counts; a quantity that is only shown decides nothing.
+    expectation
+        What is registered; None where nothing is.
+    multiple
+        Number whose multiples are the cells that fill the body of the solution.
     """
 
     run: R
@@ -122,20 +175,40 @@ class QuantityPlan(Generic[R]):
     norm: str
     judged: bool
     expectation: Expectation | None
-    multiple: int = 1  # of cells that fill the body of the solution
+    multiple: int = 1
 
     @property
     def head(self) -> Head:
-        """What the refinement is of."""
+        """All fields that the runs of the refinement share."""
         return head(self.run)
 
 
 @dataclass(frozen=True)
 class Study(Generic[R]):
-    """The runs of a case and what is declared of them before they run. `command` repeats it.
+    """Runs of a case, and the plans of their quantities, made before anything runs.
 
-    `axes` are the fields that it varies, `words` what it is for, `finish` how many runs must come to their end, of a
-    case that counts them. `made` names what it was built from, see cases/harness/reuse.py.
+    Parameters
+    ----------
+    name, title
+        Name of its folder, and title of its page.
+    command
+        Command that repeats it.
+    runs
+        Each run once.
+    plans
+        Quantities that are judged or shown, one for each refinement, quantity and norm.
+    axes
+        Fields of the Run that the study varies.
+    words
+        Sentences that say what it is for.
+    finish
+        Number of runs that must come to their end, of a case that counts them.
+    case
+        Name of the case.
+    made
+        Name of what it was built from, see cases/harness/reuse.py.
+    format
+        Number of the stored format.
     """
 
     name: str
@@ -152,15 +225,26 @@ class Study(Generic[R]):
 
 
 def head(run: RunRecord) -> Head:
-    """All that names the refinement which a run belongs to."""
+    """Name the refinement that a run belongs to.
+
+    Parameters
+    ----------
+    run
+        Run of any case.
+
+    Returns
+    -------
+    tuple of (str, value)
+        Names and values of all fields but those that a refinement varies (REFINED).
+    """
     return tuple((item.name, getattr(run, item.name)) for item in fields(run) if item.name not in REFINED)
 
 
 def without(name: str, of: Head) -> Head:
-    """A head without one of its fields: refinements that differ in that field alone have the same."""
+    """Head without one of its fields: refinements that differ in that field alone have the same."""
     return tuple((key, value) for key, value in of if key != name)
 
 
 def parameters(kind: str, plugin: Any) -> dict[str, float | str]:
-    """Every parameter of a plug-in, the defaults too, each named after its kind."""
+    """Parameters of a plug-in, the defaults too, each named after its kind."""
     return {f"{kind} {key}": getattr(plugin, item.name) for key, item in parameters_of(plugin).items()}

@@ -30,7 +30,7 @@ CASE = "column"
 
 
 def read(source: str, command: str) -> Study[Any]:
-    """The study of a file, or of a shipped name. Raises ValueError with one line for what is wrong with it."""
+    """Study of a file, or of a shipped name. Raises ValueError with one line for what is wrong with it."""
     if not source.endswith(".toml") and source not in shipped():
         near, names = meant(source, shipped()), ", ".join(shipped())
         raise ValueError(f"no study {source!r}{near}; choose from {names}, or give a file: path/to/own.toml")
@@ -48,7 +48,7 @@ def read(source: str, command: str) -> Study[Any]:
 
 
 def study_of(name: str, content: dict[str, Any], command: str) -> Study[Any]:
-    """The study of what such a file holds. Raises ValueError."""
+    """Study of the content of such a file. Raises ValueError."""
     known(content, KEYS, "the file")
     case, title = content.get("case", CASE), content.get("title", name.replace("_", " "))
     words, replicates = content.get("words", []), content.get("replicates", 1)
@@ -83,14 +83,14 @@ def values(shared: dict[str, Any], sweep: dict[str, Any]) -> dict[str, list[Any]
 
 
 def known(content: dict[str, Any], allowed: tuple[str, ...], part: str) -> None:
-    """Raises ValueError for a key that is not allowed."""
+    """Raise ValueError for a key that is not allowed."""
     for key in content:
         if key not in allowed:
             raise ValueError(f"{part} has {key!r}{meant(key, allowed)}, and may have {', '.join(allowed)}")
 
 
 def table(content: dict[str, Any], part: str) -> dict[str, Any]:
-    """A part of the file. Raises ValueError unless it is a table."""
+    """Table of the file by its name. Raises ValueError for anything else."""
     found = content.get(part, {})
     if not isinstance(found, dict):
         raise ValueError(f"{part} must be a table, [{part}], not {found!r}")

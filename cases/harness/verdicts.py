@@ -1,10 +1,10 @@
-"""From Results to verdicts: which levels belong to which declared quantity, and what the order rule says of them."""
+"""Verdicts from Results: which levels belong to which planned quantity, and what the order rule says of them."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from mpm_verify.cases.harness.axes import crossed, error, level, middle, replicated
+from mpm_verify.cases.harness.axes import cell_crossings, error, level, middle, replicated
 from mpm_verify.cases.harness.refinement import Series, collect
 from mpm_verify.cases.harness.study import Head, QuantityPlan, ResultRecord, Study, without
 from mpm_verify.cases.judging.fit import local
@@ -22,9 +22,9 @@ Results = Mapping[str, Result]
 
 @dataclass(frozen=True)
 class Finding:
-    """A declared quantity with its verdict. Where it is only shown, the verdict is shown too and decides nothing.
+    """Planned quantity with its verdict. Where it is only shown, the verdict is shown too and decides nothing.
 
-    `results` are those of the levels with the particles at their usual places, None for runs not done.
+    `results` are those of the levels with the particles at their usual positions, None for runs not done.
     """
 
     plan: QuantityPlan[Any]
@@ -36,18 +36,18 @@ class Finding:
 
     @property
     def crossings(self) -> tuple[float | None, ...]:
-        """Faces of cells that a particle passed in the run of each level."""
-        return tuple(crossed(result) for result in self.results)
+        """Mean number of cell faces that a particle crossed, for the run of each level."""
+        return tuple(cell_crossings(result) for result in self.results)
 
 
 def findings(study: Study[Any], results: Results) -> list[Finding]:
-    """Findings in the order of the declarations; `results` by digest, those not there are runs not done."""
+    """Findings in the order of the plans; `results` by digest, those not there are runs not done."""
     known = {series.head: series for series in collect(study.runs)}
-    quantities = [_quantity(d, known.get(d.head), results) for d in study.plans]
-    judged = [i for i, d in enumerate(study.plans) if d.judged]
+    quantities = [_quantity(plan, known.get(plan.head), results) for plan in study.plans]
+    judged = [i for i, plan in enumerate(study.plans) if plan.judged]
     verdicts = dict(zip(judged, judge_family([quantities[i] for i in judged]), strict=True))
     found = []
-    for i, (declared, quantity) in enumerate(zip(study.plans, quantities, strict=True)):
+    for i, (plan, quantity) in enumerate(zip(study.plans, quantities, strict=True)):
         verdict = verdicts.get(i) or judge(
             quantity.levels,
             quantity.expectation,
@@ -55,32 +55,30 @@ def findings(study: Study[Any], results: Results) -> list[Finding]:
             dt_halved=quantity.dt_halved,
             multiple=quantity.multiple,
         )
-        series = known.get(declared.head)
+        series = known.get(plan.head)
         done = tuple(results.get(run.digest) for run in series.runs) if series else ()
-        found.append(Finding(declared, verdict, tuple(quantity.ordered), done[-1] if done else None, done))
+        found.append(Finding(plan, verdict, tuple(quantity.ordered), done[-1] if done else None, done))
     return _with_stalls(found, known, results)
 
 
-def refinement(declared: QuantityPlan[Any], runs: Sequence[Run]) -> list[Run]:
-    """The runs of a declared quantity at the Courant number of the study, coarse to fine, at their usual places."""
-    return next((list(series.runs) for series in collect(runs) if series.head == declared.head), [])
+def refinement(plan: QuantityPlan[Any], runs: Sequence[Run]) -> list[Run]:
+    """Runs of a planned quantity at the Courant number of the study, coarse to fine, at the usual positions."""
+    return next((list(series.runs) for series in collect(runs) if series.head == plan.head), [])
 
 
-def _quantity(declared: QuantityPlan[Any], series: Series | None, results: Results) -> Quantity:
-    """The levels of one declared quantity, and its error with half the time step on the finest level."""
-    expectation = declared.expectation or NOTHING_EXPECTED
+def _quantity(plan: QuantityPlan[Any], series: Series | None, results: Results) -> Quantity:
+    """Levels of one planned quantity, and its error with half the time step on the finest level."""
+    expectation = plan.expectation or NOTHING_EXPECTED
     if series is None:
         return Quantity([], expectation, 0.0, None)
-    levels = [
-        Level(1 / runs[0].cells, *level(runs, results, declared.quantity, declared.norm)) for runs in series.replicates
-    ]
-    floors = [r.floor.get(declared.quantity, 0.0) for run in series.runs if (r := results.get(run.digest))]
-    half = error(series.halved, results, declared.quantity, declared.norm) if series.halved else None
-    return Quantity(levels, expectation, max(floors, default=0.0), half, declared.multiple)
+    levels = [Level(1 / runs[0].cells, *level(runs, results, plan.quantity, plan.norm)) for runs in series.replicates]
+    floors = [r.floor.get(plan.quantity, 0.0) for run in series.runs if (r := results.get(run.digest))]
+    half = error(series.halved, results, plan.quantity, plan.norm) if series.halved else None
+    return Quantity(levels, expectation, max(floors, default=0.0), half, plan.multiple)
 
 
 def _with_stalls(found: Sequence[Finding], known: Mapping[Head, Series], results: Results) -> list[Finding]:
-    """The findings, those of the displacement with the stall of their refinement."""
+    """Findings, those of the displacement with the stall of their refinement."""
     displacements = [f for f in found if (f.plan.quantity, f.plan.norm) == STALLS and f.levels]
     peers = {f.plan.head: peer for f in displacements if (peer := _peer(f))}
     stalls = {f.plan.head: explain(_measured(f, known, results, peers)) for f in displacements}
@@ -88,7 +86,7 @@ def _with_stalls(found: Sequence[Finding], known: Mapping[Head, Series], results
 
 
 def _peer(found: Finding) -> Peer | None:
-    """What other methods are told of this one; None if a level has no error."""
+    """Numbers of this method for the stalls of others; None if a level has no error."""
     if any(each.ended for each in found.levels):
         return None
     done = doublings(found)
@@ -96,12 +94,12 @@ def _peer(found: Finding) -> Peer | None:
     finest = done[-1][1] if done else None
     if finest is None or not order or order[0] is None:
         return None
-    return Peer(found.plan.run.method, order[0], crossed(finest) or 0.0, finest.gap)
+    return Peer(found.plan.run.method, order[0], cell_crossings(finest) or 0.0, finest.gap)
 
 
 def _measured(found: Finding, known: Mapping[Head, Series], results: Results, peers: Mapping[Head, Peer]) -> Measured:
-    """The numbers that can tell why a refinement stalls."""
-    d, series = found.plan, known[found.plan.head]
+    """Numbers that can tell why a refinement stalls."""
+    plan, series = found.plan, known[found.plan.head]
     done = doublings(found)
     cells = tuple(result.run.cells for _, result in done)
     ended = [
@@ -109,28 +107,28 @@ def _measured(found: Finding, known: Mapping[Head, Series], results: Results, pe
         for result in found.results
         if result and result.failure and cells and result.run.cells > cells[-1]
     ]
-    order = d.expectation.order if d.expectation and d.expectation.order is not None else USUAL
-    mine = without("method", d.head)
-    others = [peer for key, peer in peers.items() if key != d.head and without("method", key) == mine]
+    order = plan.expectation.order if plan.expectation and plan.expectation.order is not None else USUAL
+    mine = without("method", plan.head)
+    others = [peer for key, peer in peers.items() if key != plan.head and without("method", key) == mine]
     finest = bool(done) and done[-1][1].run == series.runs[-1]  # else the run with half the time step is of other cells
     return Measured(
         cells,
         tuple(middle(each.errors) for each, _ in done),
-        tuple(crossed(result) or 0.0 for _, result in done),
+        tuple(cell_crossings(result) or 0.0 for _, result in done),
         tuple(result.gap for _, result in done),
-        d.run.ppc,
-        max((result.floor.get(d.quantity, 0.0) for _, result in done), default=0.0),
+        plan.run.ppc,
+        max((result.floor.get(plan.quantity, 0.0) for _, result in done), default=0.0),
         error(series.halved, results, *STALLS) if series.halved and finest else None,
         _other(series, known, results, cells),
         tuple(others),
         ended[0] if ended else None,
         order,
-        d.expectation.below if d.expectation and d.expectation.order is not None else BELOW,
+        plan.expectation.below if plan.expectation and plan.expectation.order is not None else BELOW,
     )
 
 
 def doublings(found: Finding) -> list[tuple[Level, Result]]:
-    """The finest finished level and those with about half the cells of the next: over less, orders scatter too much."""
+    """Finest finished level and those with about half the cells of the next: over less, orders scatter too much."""
     kept: list[tuple[Level, Result]] = []
     for each, result in reversed(list(zip(found.levels, found.results, strict=True))):
         if result and not each.ended and (not kept or each.h >= DOUBLE * kept[0][0].h):

@@ -1,6 +1,6 @@
 """Statistics of one refinement study: local orders, asymptotic window, slope with interval, contamination.
 
-Levels run coarse to fine. `h` (n,) is the cell size, `error` (n,) the error norm, both positive; orders and shares
+Levels run coarse to fine. `h` (n,) is the cell size, `error` (n,) the error norm, both positive; orders and fractions
 have no unit and do not depend on the units of either. What the numbers mean for a verdict stands in order.py.
 SciPy is imported where it is called: the records of order.py are read by commands that fit nothing.
 """
@@ -21,12 +21,23 @@ STEADY = 0.15  # largest change of the local order from one level to the next in
 SHRINK = 0.6  # or each change at most this times the one before it
 AHEAD = 2  # times the levels of the window; at 1, h^2 / (1 + 128 h) with 3 % scatter fails in 22 %, not in 3 %
 RESAMPLES, SEED = 2000, 20240229  # the seed is fixed: the same errors give the same verdict
-RESOLUTION = 1e-3  # of a share
+RESOLUTION = 1e-3  # of a fraction
 EXACT = 1e-12  # relative residuals below this are round-off; they stand for a perfect fit
 
 
 def local_orders(h: Array, error: Array) -> Array:
-    """Order between neighbouring levels, (n-1,)."""
+    """Local orders between consecutive levels.
+
+    Parameters
+    ----------
+    h, error
+        Cell sizes and errors (n,), positive, coarse to fine.
+
+    Returns
+    -------
+    ndarray
+        log(e1/e2) / log(h1/h2) of each pair, (n-1,).
+    """
     orders: Array = np.diff(np.log(error)) / np.diff(np.log(h))
     return orders
 
@@ -37,13 +48,25 @@ def local(pairs: Sequence[tuple[float, float]]) -> list[float | None]:
 
 
 def slopes(sizes: Sequence[float], errors: Sequence[float]) -> tuple[float | None, ...]:
-    """log(e1/e2) / log(h1/h2) of neighbours."""
+    """Slopes log(e1/e2) / log(h1/h2) of consecutive levels (n-1,); None where an error is zero."""
     steps = zip(sizes[:-1], sizes[1:], errors[:-1], errors[1:], strict=True)
     return tuple(log(a / b) / log(s / t) if a > 0 and b > 0 else None for s, t, a, b in steps)
 
 
 def asymptotic_window(orders: Array) -> tuple[int, int] | None:
-    """Longest run of three levels or more that ends at the finest and is steady or settling; (first, last) level."""
+    """Find the asymptotic window, the longest run of levels that ends at the finest and is steady or settling.
+
+    Parameters
+    ----------
+    orders
+        Local orders (n-1,), coarse to fine.
+
+    Returns
+    -------
+    (int, int) or None
+        First and last level, at least two apart: local orders change by STEADY at most, or each change is at most
+        SHRINK times the one before it. None where there is no such run.
+    """
     for first in range(len(orders) - 1):
         change = np.abs(np.diff(orders[first:]))
         settles = len(change) > 1 and bool(np.all(change[1:] <= SHRINK * change[:-1]))
@@ -54,21 +77,36 @@ def asymptotic_window(orders: Array) -> tuple[int, int] | None:
 
 @dataclass(frozen=True, slots=True)
 class Slope:
-    """Fitted order, its standard error, and the degrees of freedom behind that error."""
+    """Fitted order.
+
+    Parameters
+    ----------
+    value
+        The order.
+    error
+        Its standard error.
+    dof
+        Degrees of freedom behind that error.
+    """
 
     value: float
     error: float
     dof: float
 
     def interval(self, confidence: float) -> tuple[float, float]:
-        """Two-sided Student interval."""
+        """Two-sided Student interval at this confidence, such as 0.95."""
         from scipy.special import stdtrit  # the quantile of Student's t
 
         half = float(stdtrit(self.dof, (1 + confidence) / 2)) * self.error
         return self.value - half, self.value + half
 
     def doubt(self, low: float, high: float) -> float:
-        """Smallest alpha whose 1 - alpha interval lies in [low, high]: twice the p value of the equivalence test."""
+        """Smallest alpha whose 1 - alpha interval lies in [low, high]: twice the p value of the equivalence test.
+
+        References
+        ----------
+        Schuirmann (1987), J. Pharmacokinet. Biopharm. 15, 657, doi:10.1007/BF01068419
+        """
         from scipy.special import stdtr
 
         margin = min(self.value - low, high - self.value)
@@ -76,9 +114,25 @@ class Slope:
 
 
 def fit_slope(h: Array, errors: Sequence[Array]) -> Slope:
-    """Least squares of mean log error on log h; `errors` holds one array of replicates a level, three levels or more.
+    """Fit the order: least squares of the mean log error on log h.
 
-    The standard error comes from a bootstrap over replicates if every level has some, else from the residuals.
+    Parameters
+    ----------
+    h
+        Cell sizes (n,), positive, coarse to fine, three levels or more.
+    errors
+        One array of replicates a level, positive.
+
+    Returns
+    -------
+    Slope
+        Its standard error comes from a bootstrap over replicates (Efron) with Satterthwaite's degrees of freedom if
+        every level has some, else from the residuals.
+
+    References
+    ----------
+    Efron (1979), Ann. Statist. 7, 1, doi:10.1214/aos/1176344552
+    Satterthwaite (1946), Biometrics Bulletin 2, 110, doi:10.2307/3002019
     """
     x = np.log(h) - np.log(h).mean()
     weight = x / (x @ x)
@@ -105,10 +159,28 @@ def _bootstrap(weight: Array, logs: Sequence[Array]) -> float:
 
 
 def contamination(h: Array, error: Array, order: float, confidence: float, noise: float = 0.0) -> Contamination:
-    """Fit e = C h^p + D h^(p-1) + E0, none negative, weights 1/e; `most` is a one-sided bound at `confidence`.
+    """Fit e = C h^p + D h^(p-1) + E0, no term negative, weights 1/e: what of the finest error is not of order p.
 
-    `noise` is the relative scatter known from replicates: residuals of few levels may be smaller by luck.
-    For p <= 1 the lower-order term would not fall with h, so it is the floor and has no column of its own.
+    Parameters
+    ----------
+    h, error
+        Cell sizes and errors (n,), positive, coarse to fine.
+    order
+        The expected order p. For p <= 1 the lower-order term would not fall with h: it is the floor and has no column
+        of its own.
+    confidence
+        Of the one-sided bound `most`.
+    noise
+        Relative scatter known from replicates: residuals of few levels may be smaller by luck.
+
+    Returns
+    -------
+    Contamination
+        Fractions of the finest error: lower-order term, floor, and the largest total that is not refuted.
+
+    References
+    ----------
+    Lawson & Hanson (1995), Solving Least Squares Problems, doi:10.1137/1.9781611971217 (non-negative least squares)
     """
     from scipy.special import stdtrit
 
@@ -116,10 +188,10 @@ def contamination(h: Array, error: Array, order: float, confidence: float, noise
     lower = (h / h[-1]) ** (order - 1) if order > 1 else np.ones_like(h)
     terms = [expected, lower, np.ones_like(h)] if order > 1 else [expected, np.ones_like(h)]
     part, residual = _relative(terms, error)
-    share = part / part.sum()
+    fraction = part / part.sum()
     dof = len(h) - np.count_nonzero(part)
     if dof == 0:  # as many terms as levels: the fit is exact and refutes nothing
-        return Contamination(float(share[1:-1].sum()), float(share[-1]), 1.0)
+        return Contamination(float(fraction[1:-1].sum()), float(fraction[-1]), 1.0)
     scatter = max(residual / np.sqrt(dof), noise, EXACT)
     limit = np.hypot(residual, stdtrit(dof, confidence) * scatter)
 
@@ -127,7 +199,7 @@ def contamination(h: Array, error: Array, order: float, confidence: float, noise
         mixed = [(1 - total) * expected + total * lower, (1 - total) * expected + total]
         return bool(_relative(mixed, error)[1] > limit)
 
-    return Contamination(float(share[1:-1].sum()), float(share[-1]), _bound(refuted, float(1 - share[0])))
+    return Contamination(float(fraction[1:-1].sum()), float(fraction[-1]), _bound(refuted, float(1 - fraction[0])))
 
 
 def _relative(terms: Sequence[Array], error: Array) -> tuple[Array, float]:
@@ -139,7 +211,7 @@ def _relative(terms: Sequence[Array], error: Array) -> tuple[Array, float]:
 
 
 def _bound(refuted: Callable[[float], bool], low: float) -> float:
-    """Smallest refuted share above `low`, by halving; 1 if even a pure contaminant is not refuted."""
+    """Smallest refuted fraction above `low`, by halving; 1 if even a pure contaminant is not refuted."""
     high = 1.0
     if not refuted(high):
         return high
@@ -151,9 +223,14 @@ def _bound(refuted: Callable[[float], bool], low: float) -> float:
 
 @dataclass(frozen=True)
 class Fit:
-    """Cell sizes (n,), coarse to fine, the replicates of each level, and what follows from them.
+    """Fit of one refinement. A single exact zero has no logarithm: then there are no orders, no window and no slope.
 
-    A single exact zero leaves no logarithm to fit: then there are no orders, no window and no slope.
+    Parameters
+    ----------
+    h
+        Cell sizes (n,), positive, coarse to fine.
+    replicates
+        Errors of each level, one or more.
     """
 
     h: Array
@@ -181,7 +258,7 @@ class Fit:
 
     @cached_property
     def judged(self) -> slice:
-        """The levels of the window, all of them if there is none."""
+        """Levels of the window, all of them if there is none."""
         return slice(self.window[0] if self.window else 0, None)
 
     @cached_property

@@ -1,4 +1,4 @@
-"""Is the observed order as expected? The rule, registered before the run, that turns errors into a verdict.
+"""Order rule, registered before the run: whether the observed order of errors is as expected.
 
 A least-squares slope within half an order of the formal one passes codes with a first-order leak, with a floor, and
 with rates that drift, so no single slope decides here. In turn: gates (is there anything to judge), asymptotic window,
@@ -9,7 +9,7 @@ norms in norms.py.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -34,7 +34,7 @@ __all__ = ["Expectation", "Level", "Outcome", "Quantity", "Verdict", "judge", "j
 LEVELS = 4  # fewer cannot show that the order has settled
 CLEAR = 100.0  # times the round-off floor
 COUPLED = 0.10  # relative change of the finest error when dt is halved
-NO_PASS, DEFECT = 0.10, 0.50  # shares of the finest error that are not of the expected order
+NO_PASS, DEFECT = 0.10, 0.50  # fractions of the finest error that are not of the expected order
 ONE_SIGMA = 0.84  # NO_PASS must hold with a standard error to spare: the best fit alone passes 8 % of 14 % floors
 MAGNITUDE = 0.10  # relative distance from the recorded error
 GROWTH = 2.0  # a flat sequence with 15 % scatter grows by 1.5 from its best level in 9 % of draws, by 2 in 0.2 %
@@ -49,9 +49,17 @@ Finding = tuple[Outcome, Reason]
 
 @dataclass(frozen=True)
 class Quantity:
-    """What is judged: the arguments of `judge`. Raises ValueError if two levels share a cell size.
+    """Quantity to be judged.
 
-    `multiple`: a number of cells that is no multiple of it cannot be asked for.
+    Parameters
+    ----------
+    levels, expectation, floor, dt_halved, multiple
+        See `judge`.
+
+    Raises
+    ------
+    ValueError
+        If two levels have the same cell size.
     """
 
     levels: Sequence[Level]
@@ -62,7 +70,7 @@ class Quantity:
 
     def __post_init__(self) -> None:
         if len({level.h for level in self.levels}) < len(self.levels):
-            raise ValueError("two levels share a cell size: replicates belong in one level")
+            raise ValueError("two levels have the same cell size; give replicates as errors of one level")
 
     @cached_property
     def ordered(self) -> list[Level]:
@@ -71,18 +79,27 @@ class Quantity:
 
     @cached_property
     def fit(self) -> Fit:
-        """What the levels that finished say."""
+        """Fit of the levels that finished."""
         done = [level for level in self.ordered if not level.ended]
         return Fit(np.array([level.h for level in done]), [np.array(level.errors) for level in done])
 
     @property
     def finer(self) -> Wanted:
-        """The run to ask for when one more level would decide: the refinement goes on as it did last."""
+        """Run to ask for when one more level would decide: the refinement goes on as it did last."""
         h = [level.h for level in self.ordered]
         return self.wanted(Action.ADD_LEVEL, h[-1] ** 2 / h[-2] if len(h) > 1 else h[-1] / 2)
 
+    @property
+    def enough(self) -> Wanted:
+        """Runs to ask for where there are fewer than LEVELS: as many as it takes, the refinement going on as it did."""
+        quantity, wanted = self, self.finer
+        while len(quantity.levels) + 1 < LEVELS:
+            quantity = replace(quantity, levels=[*quantity.levels, Level(wanted.h, ())])
+            wanted = quantity.finer
+        return wanted
+
     def wanted(self, action: Action, h: float) -> Wanted:
-        """The run that would decide, and all the cells of the study then, whole multiples of `multiple`."""
+        """Run that would decide, and all the cells of the study then, whole multiples of `multiple`."""
         counts = [round(1 / level.h) for level in self.ordered]
         if any(abs(n * level.h - 1) > 1e-6 for n, level in zip(counts, self.ordered, strict=True)):
             return Wanted(action, h)
@@ -97,7 +114,7 @@ class Quantity:
 
     @property
     def band(self) -> tuple[float, float]:
-        """Where the order must lie; anywhere if none is expected."""
+        """Band that the order must lie in; without bounds if none is expected."""
         e = self.expectation
         return (-np.inf, np.inf) if e.order is None else (e.order - e.below, e.order + e.above)
 
@@ -111,19 +128,57 @@ def judge(
     confidence: float = 0.95,
     multiple: int = 1,
 ) -> Verdict:
-    """Verdict on one quantity in one norm; `levels` may come in any order.
+    """Judge one quantity in one norm.
 
-    `floor` is the round-off floor of the quantity. `dt_halved` is the error of the finest unshifted run with half the
-    time step, None if nobody ran that. Raises ValueError if two levels share a cell size.
+    Parameters
+    ----------
+    levels
+        Errors at each cell size, in any order.
+    expectation
+        What was registered before the run.
+    floor
+        Round-off floor of the quantity.
+    dt_halved
+        Error of the finest unshifted run with half the time step; None if there is no such run.
+    confidence
+        Of the interval of the order.
+    multiple
+        Number whose multiples are the numbers of cells that can be asked for.
+
+    Returns
+    -------
+    Verdict
+        Outcome, reason, fitted order and its interval.
+
+    Raises
+    ------
+    ValueError
+        If two levels have the same cell size.
     """
     return _judge(Quantity(levels, expectation, floor, dt_halved, multiple), confidence)
 
 
 def judge_family(items: Sequence[Quantity], *, confidence: float = 0.95) -> tuple[Verdict, ...]:
-    """Verdicts in the order of `items`, with the intervals of Holm (1979): a wrong PASS anywhere in 1 - confidence.
+    """Judge several quantities as a family: the chance of a wrong PASS anywhere is at most 1 - confidence.
 
     The surest quantity needs alpha / m, the next alpha / (m - 1), and so on while they pass. Expected non-convergence
     claims no equivalence: it is judged at `confidence` and does not count in m.
+
+    Parameters
+    ----------
+    items
+        Quantities, each with its levels and expectation.
+    confidence
+        Of the family.
+
+    Returns
+    -------
+    tuple of Verdict
+        In the order of `items`.
+
+    References
+    ----------
+    Holm (1979), Scand. J. Statist. 6, 65
     """
     verdicts = {i: _judge(q, confidence) for i, q in enumerate(items) if q.expectation.order is None}
     tested = {i: q.fit.slope for i, q in enumerate(items) if i not in verdicts}
@@ -136,9 +191,9 @@ def judge_family(items: Sequence[Quantity], *, confidence: float = 0.95) -> tupl
 
 
 def _judge(q: Quantity, confidence: float) -> Verdict:
-    order, fit, slope, shares = q.expectation.order, q.fit, q.fit.slope, None
+    order, fit, slope, mixed = q.expectation.order, q.fit, q.fit.slope, None
     if order is not None and slope:
-        shares = contamination(fit.h[fit.judged], fit.error[fit.judged], order, ONE_SIGMA, fit.noise)
+        mixed = contamination(fit.h[fit.judged], fit.error[fit.judged], order, ONE_SIGMA, fit.noise)
     kind, ended = q.expectation.failed, tuple(end for level in q.ordered if (end := level.ended))
     if kind and q.ordered and all(level.failed_by(kind) for level in q.ordered):
         outcome, reason = PASS, Reason(ReasonCode.ALL_FAILED, failed=ended)
@@ -148,16 +203,16 @@ def _judge(q: Quantity, confidence: float) -> Verdict:
         outcome, reason = _non_convergence(q, confidence)
     else:
         gate = _gate(q)
-        outcome, reason = (INCONCLUSIVE, gate) if gate else _convergence(q, shares, confidence)
+        outcome, reason = (INCONCLUSIVE, gate) if gate else _convergence(q, mixed, confidence)
     observed, interval = (slope.value, slope.interval(confidence)) if slope else (None, None)
-    return Verdict(outcome, order, observed, interval, reason, tuple(fit.orders.tolist()), fit.window, shares)
+    return Verdict(outcome, order, observed, interval, reason, tuple(fit.orders.tolist()), fit.window, mixed)
 
 
 def _gate(q: Quantity) -> Reason | None:
-    """Why there is nothing to judge yet, with the run that would decide; None if every gate is open."""
+    """Reason why nothing can be judged yet, with the run that would decide; None if every gate is open."""
     fit, ended = q.fit, next((end for level in q.ordered if (end := level.ended)), None)
     if len(q.levels) < LEVELS:
-        return Reason(ReasonCode.TOO_FEW_LEVELS, {"levels": LEVELS}, wanted=q.finer)
+        return Reason(ReasonCode.TOO_FEW_LEVELS, {"levels": LEVELS}, wanted=q.enough)
     if ended:
         return Reason(ReasonCode.LEVEL_MISSING, failed=(ended,), wanted=q.wanted(Action.FINISH, ended.h))
     if fit.lowest <= CLEAR * q.floor:
@@ -173,11 +228,11 @@ def _gate(q: Quantity) -> Reason | None:
     return Reason(ReasonCode.ERROR_RISES, {"h": float(rises[0])}, wanted=q.finer) if len(rises) else None
 
 
-def _convergence(q: Quantity, shares: Contamination | None, confidence: float) -> Finding:
-    """The first FAIL of slope, contamination and magnitude, else the first INCONCLUSIVE, else PASS with all numbers."""
-    if q.fit.window is None or shares is None:
+def _convergence(q: Quantity, mixed: Contamination | None, confidence: float) -> Finding:
+    """First FAIL of slope, contamination and magnitude, else the first INCONCLUSIVE, else PASS with all numbers."""
+    if q.fit.window is None or mixed is None:
         return INCONCLUSIVE, Reason(ReasonCode.NOT_SETTLED, {"orders": tuple(q.fit.orders.tolist())}, wanted=q.finer)
-    findings = [_equivalence(q, confidence), _purity(q, shares), _magnitude(q)]
+    findings = [_equivalence(q, confidence), _purity(q, mixed), _magnitude(q)]
     decided = [f for outcome in (FAIL, INCONCLUSIVE) for f in findings if f[0] is outcome]
     if decided:
         return decided[0]
@@ -188,7 +243,7 @@ def _convergence(q: Quantity, shares: Contamination | None, confidence: float) -
 
 
 def _equivalence(q: Quantity, confidence: float) -> Finding:
-    """The whole interval of the slope, and the last local order, against the band."""
+    """Equivalence test: the whole interval of the slope, and the last local order, against the band."""
     slope, last, (low, high) = q.fit.slope, float(q.fit.orders[-1]), q.band
     assert slope is not None  # a window has three levels
     start, end = slope.interval(confidence)
@@ -203,18 +258,18 @@ def _equivalence(q: Quantity, confidence: float) -> Finding:
     return INCONCLUSIVE, Reason(ReasonCode.ORDER_UNDECIDED, numbers, wanted=q.finer)
 
 
-def _purity(q: Quantity, shares: Contamination) -> Finding:
+def _purity(q: Quantity, mixed: Contamination) -> Finding:
     """Lower order and floor in the finest error. Orders that rise to the band tell of coarse grids, not of a defect."""
-    parts: Numbers = {"lower": shares.lower, "floor": shares.floor, "most": shares.most}
-    if shares.total > DEFECT and not q.fit.rises_to(q.band[0]):
+    parts: Numbers = {"lower": mixed.lower, "floor": mixed.floor, "most": mixed.most}
+    if mixed.total > DEFECT and not q.fit.rises_to(q.band[0]):
         return FAIL, Reason(ReasonCode.CONTAMINATED, parts)
-    if shares.most > NO_PASS:
+    if mixed.most > NO_PASS:
         return INCONCLUSIVE, Reason(ReasonCode.CONTAMINATION_OPEN, {"limit": NO_PASS, **parts}, wanted=q.finer)
-    return PASS, Reason(ReasonCode.AS_EXPECTED, {"most": shares.most})
+    return PASS, Reason(ReasonCode.AS_EXPECTED, {"most": mixed.most})
 
 
 def _magnitude(q: Quantity) -> Finding:
-    """The recorded error at its own cell size; if that was not run, carried to the finest, which proves no FAIL."""
+    """Recorded error at its own cell size; if that was not run, carried to the finest, which proves no FAIL."""
     e, fit = q.expectation, q.fit
     if e.constant is None or e.constant_h is None or e.order is None:
         return PASS, Reason(ReasonCode.AS_EXPECTED)
@@ -231,7 +286,7 @@ def _magnitude(q: Quantity) -> Finding:
 
 
 def _non_convergence(q: Quantity, confidence: float) -> Finding:
-    """Met if the error grows clearly from its smallest value on, or if runs finer than a finished one were inverted.
+    """Expected non-convergence: met if the error grows clearly from its smallest value, or if finer runs were inverted.
 
     Where a stall is expected, an order that has fallen below it meets it, and failed runs do not.
     """
@@ -256,6 +311,6 @@ def _non_convergence(q: Quantity, confidence: float) -> Finding:
 
 
 def _path(fit: Fit, start: int = 0) -> Numbers:
-    """The errors from a level to the finest."""
+    """Errors of a level and of the finest, with their cell sizes."""
     ends = {"h_0": fit.h[start], "error_0": fit.error[start], "h_1": fit.h[-1], "error_1": fit.error[-1]}
     return {name: float(value) for name, value in ends.items()}

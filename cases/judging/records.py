@@ -1,4 +1,4 @@
-"""What the order rule takes and gives: Expectation and Level in, Outcome, Reason and Verdict out; no words."""
+"""Records of the order rule: Expectation and Level in, Outcome, Reason and Verdict out; no words."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -9,7 +9,7 @@ from mpm_verify.solver.failure import Failure, FailureKind
 
 
 class Outcome(StrEnum):
-    """What the harness says of one quantity."""
+    """Outcome for one quantity."""
 
     PASS = "PASS"
     FAIL = "FAIL"
@@ -28,12 +28,27 @@ def worst(outcomes: Iterable[Outcome]) -> Outcome:
 
 @dataclass(frozen=True)
 class Expectation:
-    """Registered before the run: the band [order - below, order + above], its source, and the recorded error.
+    """Expectation, registered before the run.
 
-    `constant` is the error once recorded at cell size `constant_h`. An order of None expects non-convergence: growth of
-    the error, or fine runs whose particles are inverted; if `stall` is given, a local order that falls below it on
-    cells of `stall_h` or finer; if `failed` is given, that every run ends with that kind of failure.
-    Raises ValueError if only one of the two is given, if the band has no width, or for a stall beside an order.
+    Parameters
+    ----------
+    order
+        Expected order; None expects non-convergence: growth of the error, or fine runs whose particles are inverted.
+    below, above
+        Band [order - below, order + above] that the whole interval must lie in.
+    source
+        Where the expectation comes from.
+    constant, constant_h
+        Error once recorded, and the cell size that it was recorded at.
+    stall, stall_h
+        Local order that the order falls below, on cells of `stall_h` or finer.
+    failed
+        Kind of failure that every run ends with.
+
+    Raises
+    ------
+    ValueError
+        If only one of constant and constant_h is given, if the band has no width, or for a stall beside an order.
     """
 
     order: float | None
@@ -48,15 +63,15 @@ class Expectation:
 
     def __post_init__(self) -> None:
         if (self.constant is None) != (self.constant_h is None):
-            raise ValueError("constant and constant_h belong together")
+            raise ValueError("constant and constant_h belong together; give both or neither")
         if self.below <= 0 or self.above <= 0:
-            raise ValueError(f"a band needs width on both sides, not {self.below} and {self.above}")
+            raise ValueError(f"below = {self.below} and above = {self.above} must both be above zero")
         if self.stall is not None and self.order is not None:
             raise ValueError(f"expected is either the order {self.order} or a stall below {self.stall}, not both")
 
     @property
     def kind(self) -> str:
-        """`order 2`, `diverges`, `stalls`, or `failed` with the kind of failure."""
+        """Kind in words: `order 2`, `diverges`, `stalls`, or `failed` with the kind of failure."""
         if self.order is not None:
             return f"order {self.order:g}"
         return "stalls" if self.stall is not None else f"failed {self.failed}" if self.failed else "diverges"
@@ -64,7 +79,7 @@ class Expectation:
 
 @dataclass(frozen=True)
 class Ended:
-    """A level without an error to judge: its cell size, why, and which of its replicates, 0 the unshifted one."""
+    """Level without an error to judge: its cell size, why, and which of its replicates, 0 the unshifted one."""
 
     h: float
     failure: Failure
@@ -73,10 +88,23 @@ class Ended:
 
 @dataclass(frozen=True)
 class Level:
-    """Errors at one cell size `h`: one, or one a replicate, the run on the unshifted grid first.
+    """Level of a refinement.
 
-    `failed` says what ended a run of the level, and `replicate` which one, 0 the unshifted run.
-    Raises ValueError for a cell size that is not positive or a negative error: a norm has no sign.
+    Parameters
+    ----------
+    h
+        Cell size.
+    errors
+        One error, or one a replicate, the run on the unshifted grid first.
+    failed
+        What ended a run of the level, and `replicate` which one.
+    replicate
+        Number of the run that failed, 0 the unshifted one.
+
+    Raises
+    ------
+    ValueError
+        For a cell size that is not positive or a negative error: a norm has no sign.
     """
 
     h: float
@@ -86,11 +114,11 @@ class Level:
 
     def __post_init__(self) -> None:
         if not self.h > 0 or any(e < 0 for e in self.errors):
-            raise ValueError(f"not a level: h = {self.h}, errors = {self.errors}")
+            raise ValueError(f"a level needs h > 0 and errors >= 0, not h = {self.h} and errors = {self.errors}")
 
     @property
     def ended(self) -> Ended | None:
-        """Why this level has no error to judge; None if it has one."""
+        """Reason why this level has no error to judge; None if it has one."""
         if self.failed:
             return Ended(self.h, self.failed, self.replicate)
         if self.errors and all(map(isfinite, self.errors)):
@@ -104,7 +132,7 @@ class Level:
 
 
 class ReasonCode(StrEnum):
-    """What decided a verdict; in brackets the numbers of the Reason. The words are in reports/sentences/verdicts.py."""
+    """Reason of a verdict; in brackets its numbers. The words are in reports/sentences/verdicts.py."""
 
     AS_EXPECTED = "as_expected"  # PASS [those of ORDER_*, most, and of MAGNITUDE if an error is recorded]
     ALL_FAILED = "all_failed"  # PASS: every run ended with the registered kind
@@ -130,7 +158,7 @@ class ReasonCode(StrEnum):
 
 
 class Action(StrEnum):
-    """What a run would change that decides."""
+    """Change of the study that would decide."""
 
     ADD_LEVEL = "add_level"
     REPLACE_FINEST = "replace_finest"  # by a level coarser than all
@@ -141,7 +169,7 @@ class Action(StrEnum):
 
 @dataclass(frozen=True)
 class Wanted:
-    """The run that would decide: what it changes, its cell size, and all cells to run then.
+    """Run that would decide: what it changes, its cell size, and all cells to run then.
 
     `cells` is empty where cell sizes are not one over whole numbers.
     """
@@ -156,7 +184,7 @@ Numbers = dict[str, float | tuple[float, ...]]
 
 @dataclass(frozen=True)
 class Reason:
-    """What decided: a code, its numbers, levels without an error that it is about, and the run that would decide."""
+    """Reason of a verdict: a code, its numbers, levels without an error, and the run that would decide."""
 
     code: ReasonCode
     numbers: Numbers = field(default_factory=dict, hash=False)
@@ -166,7 +194,7 @@ class Reason:
 
 @dataclass(frozen=True, slots=True)
 class Contamination:
-    """Shares of the finest error: lower-order term, floor, and the largest total that the data do not refute."""
+    """Fractions of the finest error: lower-order term, floor, and the largest total that the data do not refute."""
 
     lower: float
     floor: float
@@ -174,13 +202,29 @@ class Contamination:
 
     @property
     def total(self) -> float:
-        """Share of the finest error that is not of the expected order."""
+        """Fraction of the finest error that is not of the expected order."""
         return self.lower + self.floor
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """Outcome, what decided it, and the numbers behind it, over the finished levels, coarse to fine."""
+    """Verdict on one quantity.
+
+    Parameters
+    ----------
+    outcome, reason
+        What came out, and what decided it.
+    expected
+        Expected order; None if none is.
+    observed, interval
+        Fitted order and its interval; None with fewer than three finished levels.
+    local_orders
+        Orders between consecutive finished levels, coarse to fine.
+    window
+        First and last finished level of the asymptotic window.
+    contamination
+        Fractions of the finest error that are not of the expected order.
+    """
 
     outcome: Outcome
     expected: float | None

@@ -4,9 +4,14 @@ Three levels of spacing h1 < h2 < h3 with the values f1, f2, f3. The observed or
 
     (f3 - f2)/(f2 - f1) = r21^p (r32^p - 1)/(r21^p - 1),    r21 = h2/h1, r32 = h3/h2
 
-and the index is 1.25 |f1 - f2| / (r21^p - 1), an estimate of the uncertainty of f1 (Celik et al., J. Fluids Eng. 130
-(2008) 078001; Roache). That holds where values approach a limit from one side. Where they go to and fro, or apart,
-there is no order, and what is given as the uncertainty is half the range of the three values, and so said.
+and the index is 1.25 |f1 - f2| / (r21^p - 1), an estimate of the uncertainty of f1. That holds where values approach a
+limit from one side. Where they go to and fro, or apart, there is no order, and what is given as the uncertainty is half
+the range of the three values, and so said.
+
+References
+----------
+Roache (1994), J. Fluids Eng. 116, 405, doi:10.1115/1.2910291
+Celik, Ghia, Roache, Freitas, Coleman & Raad (2008), J. Fluids Eng. 130, 078001, doi:10.1115/1.2960953
 """
 
 from collections.abc import Sequence
@@ -25,7 +30,19 @@ LEAST = 0.5  # with a lower order the limit lies beyond 2.4 times the last diffe
 
 @dataclass(frozen=True)
 class Extrapolation:
-    """What three levels say. `order` and `limit` are NaN unless they converge; `uncertainty` is that of `finest`."""
+    """Richardson extrapolation of three levels.
+
+    Parameters
+    ----------
+    kind
+        `converges`, `oscillates`, `unsettled` (an order that is too low), or `equal` (the finest two are).
+    finest
+        Value on the finest level.
+    order, limit
+        Observed order and extrapolated limit; not a number unless the values converge (`equal`: the limit is finest).
+    uncertainty
+        That of `finest`: the grid convergence index, or half the range of the three values.
+    """
 
     kind: Kind
     finest: float
@@ -35,7 +52,25 @@ class Extrapolation:
 
 
 def extrapolate(h: Sequence[float], f: Sequence[float]) -> Extrapolation:
-    """Of three levels, finest first. Raises ValueError unless spacings rise and all is finite."""
+    """Extrapolate the values of three levels.
+
+    Parameters
+    ----------
+    h
+        Three spacings, finest first.
+    f
+        Values there, finite.
+
+    Returns
+    -------
+    Extrapolation
+        Order, limit and uncertainty.
+
+    Raises
+    ------
+    ValueError
+        Unless there are three rising spacings and three finite values.
+    """
     if len(h) != 3 or len(f) != 3 or not 0 < h[0] < h[1] < h[2] < inf or not all(map(isfinite, f)):
         raise ValueError(f"three levels of rising spacing with finite values are needed, not {h} and {f}")
     fine, coarse = f[1] - f[0], f[2] - f[1]
@@ -52,7 +87,7 @@ def extrapolate(h: Sequence[float], f: Sequence[float]) -> Extrapolation:
 
 
 def order(r21: float, r32: float, ratio: float) -> float:
-    """The order p of f(h) = f0 + C h^p from (f3 - f2)/(f2 - f1) > 0; NaN where none is above zero."""
+    """Order p of f(h) = f0 + C h^p from (f3 - f2)/(f2 - f1) > 0; NaN where none is above zero."""
 
     def miss(p: float) -> float:
         return log(ratio) - p * log(r21) - log((r32**p - 1) / (r21**p - 1))

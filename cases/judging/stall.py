@@ -1,4 +1,4 @@
-"""Where a refinement stalls, and why: each cause that could be, weighed by measured numbers.
+"""Stalls of a refinement, and their causes: each that could be, weighed by measured numbers.
 
 A stall is a local order of the finest pair of levels below what is usual, and lower than before. The part of the finest
 error that the usual order does not explain, the *excess*, is what a cause has to explain. A run that differs in nothing
@@ -17,7 +17,7 @@ from mpm_verify.cases.judging.records import Ended
 USUAL, BELOW = 2.0, 0.2  # order of u of every method here before particles cross cells, and the band of the order rule
 DROP = 0.1  # a smaller fall of the local order is none
 FLAT = 0.5  # a local order below it is a stall without a fall before it
-NAMED, PART = 0.5, 0.25  # shares of the excess
+NAMED, PART = 0.5, 0.25  # fractions of the excess
 CLEAR = 100.0  # times the round-off floor, as in the order rule
 SPACING = 0.02  # gap between domains, in particle spacings, below which it is none
 FOLLOWS = 0.5  # the excess grows with the crossings: least power
@@ -25,7 +25,7 @@ ALIKE = 0.25  # relative difference of crossings that are as many
 
 
 class Finding(StrEnum):
-    """How well a cause is known."""
+    """Evidence for a cause."""
 
     SHOWN = "shown"
     PRESENT = "present"
@@ -34,7 +34,7 @@ class Finding(StrEnum):
 
 
 class CauseCode(StrEnum):
-    """What can make an order fall; in brackets the numbers of the Cause, which has none where nothing is measured."""
+    """Causes that make an order fall; in brackets the numbers of the Cause, none where nothing is measured."""
 
     FAILED_RUN = "failed_run"  # a finer run failed, and so nothing is known of its order
     CROSSINGS = "cell_crossings"  # [faces; cells; faces_first, cells_first; cells_before, ratio, ...]
@@ -56,7 +56,7 @@ class Peer:
 
 @dataclass(frozen=True)
 class Measured:
-    """What is measured of one refinement: sequences over the finished levels, coarse to fine.
+    """Measurements of one refinement: sequences over the finished levels, coarse to fine.
 
     `gaps` in particle spacings, None for methods that know points only. `halved` is the finest error with half the time
     step, `other` another particle count and the errors of the finest levels with it. `ended`: the next finer run, if it
@@ -65,7 +65,7 @@ class Measured:
 
     cells: tuple[int, ...]
     errors: tuple[float, ...]
-    crossings: tuple[float, ...]  # faces of cells that a particle passed
+    crossings: tuple[float, ...]  # mean number of cell faces that a particle crossed
     gaps: tuple[float | None, ...]
     ppc: int
     floor: float = 0.0
@@ -83,11 +83,11 @@ class Measured:
 
     @property
     def excess(self) -> list[float]:
-        """The part of each error beyond the smallest that the usual order gives from a coarser level, (n,)."""
+        """Part of each error beyond the smallest that the usual order gives from a coarser level, (n,)."""
         return [max(0.0, e - min(self._carried(i))) for i, e in enumerate(self.errors)]
 
     def _carried(self, level: int) -> list[float]:
-        """The errors up to a level, carried to it by the usual order."""
+        """Errors up to a level, carried to it by the usual order."""
         known = zip(self.cells[: level + 1], self.errors, strict=False)
         return [e * (n / self.cells[level]) ** self.order for n, e in known]
 
@@ -123,17 +123,17 @@ class Stall:
 
     @property
     def named(self) -> list[Cause]:
-        """What the evidence names."""
+        """Causes that explain half of the excess or more."""
         return [c for c in self.causes if c.weight >= NAMED]
 
     @property
     def parts(self) -> list[Cause]:
-        """What explains a part."""
+        """Causes that explain a quarter to a half of it."""
         return [c for c in self.causes if PART <= c.weight < NAMED]
 
 
 def explain(m: Measured) -> Stall | None:
-    """The stall of a refinement, None where the order is as usual or too little is known."""
+    """Stall of a refinement, None where the order is as usual or too little is known."""
     orders = m.orders
     if not (m.cells and (m.ended or stalls(m))):
         return None
@@ -157,8 +157,8 @@ def stalls(m: Measured) -> bool:
     return orders[-1] < m.order - m.below and (fell or orders[-1] < FLAT)
 
 
-def _share(m: Measured, removed: float) -> float:
-    """What a change of the finest error is of the excess, 0 to 1."""
+def _fraction(m: Measured, removed: float) -> float:
+    """Fraction of the excess that a change of the finest error removes, 0 to 1."""
     return min(1.0, max(0.0, removed) / m.excess[-1]) if m.excess[-1] > 0 else 0.0
 
 
@@ -167,12 +167,14 @@ def _judged(weight: float) -> Finding:
 
 
 def _particles(m: Measured) -> Cause:
-    """The same cells with more particles, or with fewer where none has more."""
+    """Quadrature: the same cells with more particles, or with fewer where none has more."""
     if m.other is None:
         return Cause(CauseCode.QUADRATURE, Finding.UNKNOWN, 0.0)
     ppc, errors = m.other
     more, change = ppc > m.ppc, errors[-1] / m.errors[-1] - 1
-    weight = _share(m, -change * m.errors[-1]) if more else _share(m, m.errors[-1] * (1 - m.errors[-1] / errors[-1]))
+    weight = (
+        _fraction(m, -change * m.errors[-1]) if more else _fraction(m, m.errors[-1] * (1 - m.errors[-1] / errors[-1]))
+    )
     numbers = {"ppc": float(m.ppc), "other_ppc": float(ppc), "change": change}
     if len(errors) > 1 and min(errors) > 0:
         numbers["order"] = log(errors[-2] / errors[-1]) / log(m.cells[-1] / m.cells[-2])
@@ -180,7 +182,7 @@ def _particles(m: Measured) -> Cause:
 
 
 def _gaps(m: Measured) -> Cause:
-    """Gaps that stay the same part of the spacing leave an error that refinement does not reduce as the order asks."""
+    """Gaps between domains: where they stay the same part of the spacing, refinement does not reduce their error."""
     if m.gaps[-1] is None or m.gaps[0] is None:
         return Cause(CauseCode.GAPS, Finding.EXCLUDED, 0.0)
     first, last = m.gaps[0], m.gaps[-1]
@@ -198,7 +200,7 @@ def _time_step(m: Measured) -> Cause:
     if m.halved is None:
         return Cause(CauseCode.TIME_STEP, Finding.UNKNOWN, 0.0)
     change = m.halved / m.errors[-1] - 1
-    weight = _share(m, -change * m.errors[-1])
+    weight = _fraction(m, -change * m.errors[-1])
     return Cause(CauseCode.TIME_STEP, _judged(weight), weight, {"change": change})
 
 
@@ -211,7 +213,7 @@ def _floor(m: Measured) -> Cause:
 
 
 def _crossings(m: Measured, explained: float) -> Cause:
-    """Crossings explain what other causes leave, or more where the excess grows with them.
+    """Cell crossings: they explain what other causes leave, or more where the excess grows with them.
 
     Every run of a moving body has them, so nothing shows them by themselves: a run without them has another motion.
     """
@@ -232,13 +234,13 @@ def _crossings(m: Measured, explained: float) -> Cause:
 
 
 def _best(peers: list[Peer], m: Measured) -> Peer | None:
-    """Of methods that are like this one in some way, the one that keeps its order best: then it is not that way."""
+    """Best of the methods that are like this one in some way and keep their order: then it is not that way."""
     kept = [p for p in peers if p.order >= m.order - m.below]
     return min(kept, key=lambda p: abs(p.order - m.order), default=None)
 
 
 def _crossings_alone(m: Measured) -> list[Cause]:
-    """Crossings where no order is known to fall."""
+    """Cell crossings where no order is known to fall."""
     numbers = {"faces": m.crossings[-1], "cells": float(m.cells[-1])}
     enough = m.crossings[-1] >= PART
     return [Cause(CauseCode.CROSSINGS, Finding.PRESENT, 0.0, numbers)] if enough else []

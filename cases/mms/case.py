@@ -30,11 +30,11 @@ from mpm_verify.solver.stress_update import check_stress_update
 __all__ = ["AXES", "JUDGED", "NORMS", "QUANTITIES", "QUICK", "Result", "Run"]
 
 JUDGED = (JUDGED_QUANTITY,)
-SCHEME = {"transfer": "flip", "stress": "usl", "layout": "uniform"}  # of which expectations are registered
+SCHEME = {"transfer": "flip", "stress": "usl", "layout": "uniform"}  # the one that expectations are registered for
 
 
 def title(runs: Sequence[Run]) -> str:
-    """`CPDI and MPM against the manufactured solution axis_aligned`."""
+    """Title, such as `CPDI and MPM against the manufactured solution axis_aligned`."""
     methods, solutions = (tuple(dict.fromkeys(getattr(run, key) for run in runs)) for key in ("method", "solution"))
     named = " and ".join(m.upper() for m in methods) if len(methods) < 4 else f"{len(methods)} methods"
     several = "solutions" if len(solutions) > 1 else "solution"
@@ -53,7 +53,7 @@ def canonical(values: dict[str, Any]) -> dict[str, Any]:
 
 
 def check(runs: Sequence[Run]) -> None:
-    """Raises ValueError with one line for a solution, material or layout that cannot be run."""
+    """Raise ValueError with one line for a solution, material or layout that cannot be run."""
     cells: dict[tuple[str, str, str], set[int]] = {}
     for run in runs:
         cells.setdefault((run.solution, run.material, run.layout), set()).add(run.cells)
@@ -71,7 +71,7 @@ def check(runs: Sequence[Run]) -> None:
 
 
 def parts(asked: Asked) -> list[Asked]:
-    """The same asked for with cells that fill the body of each solution, where no cells were asked for."""
+    """Parts of the request, with cells that fill the body of each solution, where no cells were asked for."""
     solutions = asked.values.get("solution", (Run.solution,))
     if "cells" in asked.values or not any(is_file(one) for one in solutions):
         return [asked]
@@ -89,7 +89,7 @@ def multiple(run: Run) -> int:
 
 
 def expectation(run: Run, quantity: str, norm: str) -> Expectation | None:
-    """What is registered: of the usual scheme alone; recorded errors hold for the usual time step and start."""
+    """Registered expectation, of the usual scheme alone; recorded errors hold for the usual time step and start."""
     if any(getattr(run, name) != usual for name, usual in SCHEME.items()):
         return None
     usual = run.courant == Run.courant and run.staggered

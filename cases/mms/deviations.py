@@ -1,4 +1,4 @@
-"""What methods do on the shipped solutions beside what they promise, as data: all measured, see ARCHITECTURE.md.
+"""Deviations of methods from what they promise, on the shipped solutions, as data: all measured, see ARCHITECTURE.md.
 
 What is not here is as `Basis.promises` says: u of order 2, or an error that grows.
 """
@@ -12,7 +12,7 @@ SMALL_AMPLITUDE = "small amplitude"  # a regime of its own: no particle crosses 
 
 @dataclass(frozen=True)
 class Deviation:
-    """Orders of `u` (None: as promised), `v`, `F` and `sigma`, or one of the two others.
+    """Deviation: orders of `u` (None: as promised), `v`, `F` and `sigma`, or one of the two others.
 
     `stalls`: cells on which the fallen order of u shows at the latest; `fails`: what ends every run.
     """

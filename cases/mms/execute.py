@@ -15,7 +15,7 @@ from mpm_verify.cases.harness.memory import forget_peak, peak_memory
 from mpm_verify.cases.harness.progress import Progress
 from mpm_verify.cases.harness.study import Arrays, parameters
 from mpm_verify.cases.mms.gaps import LOOKS, Gaps
-from mpm_verify.cases.mms.norms import Norms, compare, new_shares
+from mpm_verify.cases.mms.norms import Norms, compare, new_sums
 from mpm_verify.cases.mms.packing import Packing
 from mpm_verify.cases.mms.run import QUANTITIES, Result, Run
 from mpm_verify.cases.mms.time_step import time_steps, width
@@ -42,24 +42,24 @@ COUNTED = 40_000  # particles: the outline of a uniform layout with more takes a
 
 @dataclass
 class Comparison:
-    """Body force and errors from one call of the exact kernel: it gives both at the time that x, F and sigma have."""
+    """Body force and errors from one call of the exact kernel, both at the time level of x, F and sigma."""
 
     exact: Manufactured
     norms: Norms
     gaps: Gaps
     packing: Packing | None
-    shares: Floats
-    behind: float  # how far v is behind x in time
+    sums: Floats
+    lag: float  # time level of x less that of v
 
     def __call__(self, particles: Particles, t: float) -> None:
         """Write particles.b at time t; add the errors of that time to the norms, the start left out."""
-        scalars = self.exact.kernel.scalars(t, t - self.behind)
+        scalars = self.exact.kernel.scalars(t, t - self.lag)
         compare(
             self.exact.kernel.fill, particles.carried, scalars, particles.X, particles.x, particles.v, particles.F,
-            particles.sigma, particles.V0, particles.b, self.shares,
+            particles.sigma, particles.V0, particles.b, self.sums,
         )  # fmt: skip
         if t > 0:
-            self.norms.add(self.shares)
+            self.norms.add(self.sums)
 
 
 def setup(run: Run) -> tuple[Model, Comparison, int]:
@@ -75,46 +75,46 @@ def setup(run: Run) -> tuple[Model, Comparison, int]:
     shift = -dx * np.array(run.offset) if free else np.zeros(2)
     grid = Grid(dx, solution.lower - below + shift, solution.upper + above + shift)
     steps, dt = time_steps(solution, grid.dx, run.courant)
-    behind = 0.5 * dt if run.staggered else 0.0
+    lag = 0.5 * dt if run.staggered else 0.0
 
     exact, basis = manufactured(run.solution, run.material), create(METHODS, run.method)
     layout = laid_out(run, solution, exact)
-    particles, X = basis.populate(layout, material.rho0, lambda places: exact.x(places, 0.0)), layout.X
-    particles.x, particles.v = exact.x(X, 0.0), exact.v(X, -behind)
+    particles, X = basis.populate(layout, material.rho0, lambda X: exact.x(X, 0.0)), layout.X
+    particles.x, particles.v = exact.x(X, 0.0), exact.v(X, -lag)
     particles.F, particles.sigma = exact.F(X, 0.0), exact.sigma(X, 0.0)
     particles.carried = exact.kernel.columns(X)
     transfer, stress = create(TRANSFERS, run.transfer), run.stress
     scheme = Scheme(transfer, stress, run.staggered)
     walls = moving(grid, solution.walls) if solution.boundary == "moving" else box(grid, solution.boundary)
     model = Model(grid, particles, basis, material, walls, dt, scheme)
-    transfer.start(model, lambda X: velocity_gradient(exact, X, -behind, 1e-3 * dt))
+    transfer.start(model, lambda X: velocity_gradient(exact, X, -lag, 1e-3 * dt))
     every = max(1, steps // LOOKS)
     packing = Packing(exact, layout, dx, every) if run.layout != "uniform" or len(layout) <= COUNTED else None
     norms, gaps = Norms(len(particles), float(particles.V0.mean())), Gaps(layout, every)
-    return model, Comparison(exact, norms, gaps, packing, new_shares(particles), behind), steps
+    return model, Comparison(exact, norms, gaps, packing, new_sums(particles), lag), steps
 
 
 def laid_out(run: Run, solution: Any, exact: Manufactured) -> Layout:
-    """Where the particles of the run lie; of a free body the offset moves the grid instead."""
+    """Layout of the particles of the run; of a free body the offset moves the grid instead."""
     offset = CENTRED if solution.boundary == "free" else run.offset
     layout: Layout = create(LAYOUTS, run.layout)(solution, exact, width(solution) / run.cells, run.ppc, offset)
     return layout
 
 
 def velocity_gradient(exact: Manufactured, X: Floats, t: float, short: float) -> Floats:
-    """L = dF/dt F^-1 (P,2,2), by the central difference of the exact F over the times t - short and t + short."""
+    """Velocity gradient L = dF/dt F^-1 (P,2,2), by the central difference of the exact F over t -/+ short."""
     rate = (exact.F(X, t + short) - exact.F(X, t - short)) / (2 * short)
     L: Floats = rate @ np.linalg.inv(exact.F(X, t))
     return L
 
 
 def manufactured(solution: str, material: str) -> Manufactured:
-    """The exact solution of two specifications, derived and compiled once in a process for what they now stand for."""
+    """Exact solution of two specifications, derived and compiled once in a process for what they now stand for."""
     return _manufactured(solution, material, _now(solution, material))
 
 
 def audited(solution: str, material: str) -> tuple[BlindSpot, ...]:
-    """The auditor's lines on two specifications, once in a process for what they now stand for."""
+    """Findings of the audit of two specifications, once in a process for what they now stand for."""
     return _audited(solution, material, _now(solution, material))
 
 
@@ -124,8 +124,8 @@ def _now(solution: str, material: str) -> tuple[str, str]:
 
 @cache
 def _manufactured(solution: str, material: str, now: tuple[str, str]) -> Manufactured:
-    law: Any = create(MATERIALS, material)
-    return manufacture(create(SOLUTIONS, solution), law, law.rho0)
+    model: Any = create(MATERIALS, material)
+    return manufacture(create(SOLUTIONS, solution), model, model.rho0)
 
 
 @cache
@@ -133,8 +133,8 @@ def _audited(solution: str, material: str, now: tuple[str, str]) -> tuple[BlindS
     return audit(manufactured(solution, material), create(SOLUTIONS, solution), create(MATERIALS, material)).spots
 
 
-def execute(run: Run, tick: Callable[[float], None] = lambda share: None) -> tuple[Result, Arrays]:
-    """Run to the end, or to where it cannot go on: a failed run is a Result. `tick` hears the share that is done."""
+def execute(run: Run, tick: Callable[[float], None] = lambda fraction: None) -> tuple[Result, Arrays]:
+    """Run to the end, or to where it cannot go on: a failed run is a Result. `tick` hears the fraction that is done."""
     forget_peak()
     model, comparison, steps = setup(run)
     model.watch(comparison.gaps, *filter(None, [comparison.packing]), Progress(tick, steps))
@@ -143,7 +143,7 @@ def execute(run: Run, tick: Callable[[float], None] = lambda share: None) -> tup
         if not run.force:
             check_time_step(model)
         if comparison.packing:
-            comparison.packing.begin(model, refuse=run.layout != "uniform")
+            comparison.packing.begin(model, must=run.layout != "uniform")
         for _ in range(steps):
             advance(model, comparison)
         comparison(model.particles, model.time)
@@ -180,7 +180,7 @@ def execute(run: Run, tick: Callable[[float], None] = lambda share: None) -> tup
 
 
 def magnitude(exact: Manufactured, particles: Particles, duration: float) -> dict[str, float]:
-    """rms of the exact quantities, from some thousand places and sixteen times; by volume, as the errors are."""
+    """Root mean square of the exact quantities, from some thousand positions and sixteen times, weighted by volume."""
     step = max(1, len(particles) // 1000)
     some, volume = particles.X[::step], particles.V0[::step, None] / particles.V0[::step].mean()
     times = duration * (np.arange(16) + 0.5) / 16
@@ -197,7 +197,7 @@ def magnitude(exact: Manufactured, particles: Particles, duration: float) -> dic
 def round_off(scale: dict[str, float], model: Model) -> dict[str, float]:
     """Round-off floor: half a digit of the largest number involved, in a random walk over the steps.
 
-    u is the difference of places of size L, and F of numbers near one; v and sigma have the size of their exact values.
+    u is the difference of positions of size L, and F of numbers near one; v and sigma have the size of the exact ones.
     """
     walk = np.finfo(float).eps * sqrt(max(1, model.steps))
     size = {**scale, "u": float(np.ptp(model.particles.X)), "F": 1.0}
@@ -205,7 +205,7 @@ def round_off(scale: dict[str, float], model: Model) -> dict[str, float]:
 
 
 def snapshot(run: Run, model: Model, comparison: Comparison) -> Arrays:
-    """The particles at the last step in the initial order, float32, for figures; points are drawn as if with CPDI.
+    """Particles at the last step in the initial order, float32, for figures; points are drawn as if with CPDI.
 
     Piece by piece: in double precision and at once, it would be the peak of the run's memory.
     """
@@ -215,11 +215,11 @@ def snapshot(run: Run, model: Model, comparison: Comparison) -> Arrays:
     known = model.basis.corners(p.x[:1], p.F[:1], p.domain[:1], model.grid.dx) is not None
     r0 = None if known else laid_out(run, create(SOLUTIONS, run.solution), comparison.exact).r0
     for rows in (slice(lo, lo + PIECE) for lo in range(0, count, PIECE)):
-        X, x, F, place = p.X[rows], p.x[rows], p.F[rows], p.id[rows]
+        X, x, F, row = p.X[rows], p.x[rows], p.F[rows], p.id[rows]
         corners = model.basis.corners(x, F, p.domain[rows], model.grid.dx)
         if corners is None and r0 is not None:
-            corners = parallelograms(x, np.einsum("pab,psb->psa", F, r0[place]))
+            corners = parallelograms(x, np.einsum("pab,psb->psa", F, r0[row]))
         error = np.hypot(*(x - comparison.exact.x(X, model.time)).T)
         for name, values in {"X": X, "x": x, "F": F, "corners": corners, "error_u": error}.items():
-            arrays[name][place] = values
+            arrays[name][row] = values
     return arrays

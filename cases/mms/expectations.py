@@ -1,4 +1,4 @@
-"""What is expected of each method on each solution, registered with its source before anything runs.
+"""Registry of what is expected of each method on each solution, with its source, before anything runs.
 
 It is what the method promises (`Basis.promises`), or what deviates from that (cases/mms/deviations.py).
 
@@ -35,7 +35,7 @@ MEASURED = "measured, see ARCHITECTURE.md"
 
 @dataclass(frozen=True)
 class Entry:
-    """One line of the registry."""
+    """One entry of the registry."""
 
     solution: str
     method: str
@@ -55,7 +55,7 @@ def registry() -> Iterator[Entry]:
 
 
 def registered(solution: str, method: str, quantity: str) -> Expectation | None:
-    """What the method promises, or what deviates from it; None where neither says anything of this quantity.
+    """Expectation that the method promises, or that deviates from it; None where neither says anything of it.
 
     A measured order has a wide band: it still falls on the grids that it was seen on. The source of a promise is named
     for u where the promise is kept.
@@ -80,10 +80,10 @@ def registered(solution: str, method: str, quantity: str) -> Expectation | None:
 def expected(
     method: str, solution: str, material: str, ppc: int, quantity: str, norm: str, usual: bool = True
 ) -> Expectation | None:
-    """The registered expectation, for canonical specifications; None where there is none: only shown.
+    """Registered expectation, for canonical specifications; None where there is none: only shown.
 
-    `usual` says that the scheme is the one whose errors are recorded. Of a user's own solution the order of u is
-    expected that its file declares, or else the one that the method promises.
+    `usual` says that the scheme is the one whose errors are recorded. A user's own solution has the order of u
+    that its file declares, or else the one that the method promises.
     """
     if norm != "rms" or ppc not in JUDGED_PPC:
         return None
@@ -91,9 +91,9 @@ def expected(
     if is_file(solution):
         if quantity != "u":
             return None
-        declared, promise = plugin.order, promised(method, plugin)
-        if declared:
-            return Expectation(declared, source="declared in the solution's file")
+        own_order, promise = plugin.order, promised(method, plugin)
+        if own_order:
+            return Expectation(own_order, source="declared in the solution's file")
         return Expectation(promise, source="declared by the method") if promise else None
     name = split(solution)[0]
     regime = SMALL_AMPLITUDE if small(plugin) else name

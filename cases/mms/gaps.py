@@ -1,4 +1,4 @@
-"""Gaps and overlaps between the domains of neighbours, measured while a run goes on."""
+"""Gaps and overlaps between adjacent domains, measured while a run goes on."""
 
 from dataclasses import InitVar, dataclass, field
 
@@ -9,14 +9,14 @@ from mpm_verify.solver.model import Model, Observer
 from mpm_verify.solver.state import Floats, Ints
 
 LOOKS = 16  # in a run
-PATCHES, PATCH = 8, 200  # particles are looked at in so many places, and so many together in each
+PATCHES, PATCH = 8, 200  # particles are looked at in so many patches, and so many in each
 
 
 @dataclass
 class Gaps(Observer):
-    """How far domains are from tiling the body: rms distance of the copies of a corner from their middle.
+    """Observer of how far domains are from tiling the body: rms distance of the copies of a corner from their middle.
 
-    Neighbours of the layout share corners; where each has its own, there is a gap or an overlap. In shares of the
+    Adjacent domains of the layout share corners; where each has its own, there is a gap or an overlap. In units of the
     particle spacing, the largest of all looks, one `every` so many steps. `most` is None for methods that know points
     only.
     """
@@ -48,17 +48,17 @@ class Gaps(Observer):
         if corners is not None:
             self.most = max(self.most or 0.0, self.apart(corners.reshape(-1, 2)) / self.spacing)
 
-    def apart(self, places: Floats) -> float:
-        """rms distance of copies (n,2) from the middle of those of the same corner, over corners with several."""
+    def apart(self, corners: Floats) -> float:
+        """Root mean square distance of copies (n,2) from the middle of those of their corner."""
         copies = np.bincount(self.owner)
-        middle = np.stack([np.bincount(self.owner, places[:, a]) / copies for a in (0, 1)], axis=-1)
+        middle = np.stack([np.bincount(self.owner, corners[:, a]) / copies for a in (0, 1)], axis=-1)
         several = copies[self.owner] > 1
-        away = (places - middle[self.owner])[several]
+        away = (corners - middle[self.owner])[several]
         return float(np.sqrt(np.mean(np.sum(away**2, axis=1)))) if several.any() else 0.0
 
 
 def patches(X: Floats) -> Ints:
-    """Rows of particles in some places, each with its neighbours; all particles where there are few."""
+    """Rows of particles in some patches of the body; all particles where there are few."""
     if len(X) <= PATCHES * PATCH:
         return np.arange(len(X))
     seeds = X[np.linspace(0, len(X) - 1, PATCHES + 2).astype(np.int64)[1:-1]]

@@ -22,7 +22,7 @@ Point = tuple[float, float]  # cost, error
 
 @dataclass(frozen=True)
 class Plan:
-    """What is asked for. `ppc` are those of the uniform layouts; graded ones are run where cells stay packed."""
+    """Request for a study of layouts. `ppc` are those of the uniform layouts; graded ones need packed cells."""
 
     methods: tuple[str, ...] = ("cpdi", "gimp", "mpm")
     solutions: tuple[str, ...] = ("localised", "axis_aligned")
@@ -33,7 +33,7 @@ class Plan:
 
 
 def build_graded(plan: Plan, command: str, name: str) -> Study[Any]:
-    """The Study; nothing in it is judged. Raises ValueError, see Sweep.check and mms.grading.Grading.
+    """Build the Study; nothing in it is judged. Raises ValueError, see Sweep.check and mms.grading.Grading.
 
     A contrast leaves ppc / contrast^2 particles in a cell where there is no strain: counts with less than one are not
     graded.
@@ -55,13 +55,13 @@ def build_graded(plan: Plan, command: str, name: str) -> Study[Any]:
 
 
 def kind(run: Run) -> str:
-    """uniform, graded or thinned."""
+    """Kind of the layout: uniform, graded or thinned."""
     return run.layout.partition(":")[0]
 
 
 @dataclass(frozen=True)
 class Bounded:
-    """A factor, or where the study does not reach far enough a bound of it: `at_least`, `at_most`."""
+    """Factor, or where the study does not reach far enough a bound of it: `at_least`, `at_most`."""
 
     value: float
     bound: str = ""
@@ -69,7 +69,7 @@ class Bounded:
 
 @dataclass(frozen=True)
 class Saving:
-    """A run that is not uniform, beside the uniform ones.
+    """Saving of a run that is not uniform, beside the uniform ones.
 
     `particles` and `errors`: its own over those of the uniform run with the same `ppc` on the same grid, None where
     that one failed. `same_grid`: particles of a uniform layout with its error on its grid, over its own. `any_grid`:
@@ -86,7 +86,7 @@ class Saving:
 
 
 def savings(runs: Sequence[Run], results: Results, quantity: str = "u") -> list[Saving]:
-    """One a finished run with a layout that is not uniform, in the order of the runs."""
+    """Savings, one for each finished run with a layout that is not uniform, in the order of the runs."""
     done = [(run, results[run.digest]) for run in runs if run.digest in results]
     return [
         saving(result, runs, results, quantity)
@@ -96,7 +96,7 @@ def savings(runs: Sequence[Run], results: Results, quantity: str = "u") -> list[
 
 
 def saving(result: Result, runs: Sequence[Run], results: Results, quantity: str) -> Saving:
-    """Of one finished run."""
+    """Saving of one finished run."""
     run, error = result.run, result.errors[quantity]["rms"]
     every = uniform(run, runs, results, quantity)
     here = [(r, e) for r, e in every if r.run.cells == run.cells]

@@ -1,4 +1,4 @@
-"""The study of all methods on the solutions that tell them apart: the MMS studies of each solution in one Study."""
+"""Study of all methods on the solutions that tell them apart: the MMS studies of each solution in one Study."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -24,7 +24,7 @@ LEVELS: dict[str, tuple[int, ...]] = {
 
 
 def every_method() -> list[str]:
-    """Every basis there is; those that tables show first, in their order."""
+    """Names of all bases, those that tables show first."""
     known = [method for method in SHOWN if method in available(METHODS)]
     return list(dict.fromkeys([*known, *available(METHODS)]))
 
@@ -32,7 +32,7 @@ def every_method() -> list[str]:
 def build_methods(
     methods: Sequence[str], levels: dict[str, tuple[int, ...]], ppc: Sequence[int], command: str, name: str
 ) -> Study[Any]:
-    """One Study of these methods; `levels` gives the cells of each solution. Raises ValueError, see build.union."""
+    """Build one Study of these methods; `levels`: the cells of each solution. Raises ValueError, see build.union."""
     parts = [
         Asked("mms", {"method": methods, "solution": (solution,), "cells": cells, "ppc": ppc})
         for solution, cells in levels.items()

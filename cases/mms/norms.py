@@ -1,4 +1,4 @@
-"""Error norms: the only place where one is computed.
+"""Error norms, computed here and nowhere else.
 
 With e the error of a particle at a step, N_t steps and N_p particles (weights V0 / mean V0 where volumes differ):
 
@@ -22,7 +22,7 @@ from mpm_verify.solver._jit import BLOCK, F1, F2, F3, i8, kernel, nothing
 from mpm_verify.solver.state import Floats, Particles
 
 CHUNK = 128 * BLOCK  # particles of one partial sum; fixed, so that the sums have one order for any number of threads
-SHARES = 8  # sums of squared errors of u, v, F, sigma, and the largest ones
+SUMS = 8  # sums of squared errors of u, v, F, sigma, and the largest ones
 
 
 @kernel(inline=True)
@@ -35,7 +35,7 @@ def tally(lanes, q, b, weight, square):
 
 @kernel(nothing(F1, F1, F1, F1, F1, F1, F1, F1, F1))
 def tally_block(out, X, x, v, F, sigma, V0, b, lanes):
-    """Squared errors of a block, all arrays flat; short loops over few arrays, so that the compiler vectorises each."""
+    """Tally the squared errors of a block, all arrays flat; short loops over few arrays, so that each vectorises."""
     n = V0.shape[0]
     for i in range(n):
         ex = x[2 * i] - X[2 * i] - out[i]
@@ -63,14 +63,14 @@ def tally_block(out, X, x, v, F, sigma, V0, b, lanes):
 
 
 @kernel(nothing(Exact, i8, i8, F2, F1, F2, F2, F2, F3, F2, F1, F2, F1))
-def compare_chunk(exact, start, end, carried, scalars, X, x, v, F, sigma, V0, b, shares):
-    """The particles start ... end-1; their sums to shares (8,)."""
+def compare_chunk(exact, start, end, carried, scalars, X, x, v, F, sigma, V0, b, sums):
+    """Write the sums (8,) of the particles start ... end-1."""
     width = carried.shape[1]
     columns = carried.reshape(-1)
     Xs, xs, vs, bs = X.reshape(-1), x.reshape(-1), v.reshape(-1), b.reshape(-1)
     Fs, sigmas = F.reshape(-1), sigma.reshape(-1)
     out = np.empty(ROOM * BLOCK)
-    lanes = np.zeros(SHARES * BLOCK)
+    lanes = np.zeros(SUMS * BLOCK)
     for lo in range(start, end, BLOCK):
         hi = min(lo + BLOCK, end)
         exact(columns[lo * width : hi * width], scalars, hi - lo, out)
@@ -79,17 +79,17 @@ def compare_chunk(exact, start, end, carried, scalars, X, x, v, F, sigma, V0, b,
             sigmas[4 * lo : 4 * hi], V0[lo:hi], bs[2 * lo : 2 * hi], lanes,
         )  # fmt: skip
     for q in range(4):
-        shares[q] = lanes[q * BLOCK : (q + 1) * BLOCK].sum()
-        shares[4 + q] = lanes[(4 + q) * BLOCK : (5 + q) * BLOCK].max()
+        sums[q] = lanes[q * BLOCK : (q + 1) * BLOCK].sum()
+        sums[4 + q] = lanes[(4 + q) * BLOCK : (5 + q) * BLOCK].max()
 
 
 @kernel(nothing(Exact, F2, F1, F2, F2, F2, F3, F2, F1, F2, F2), parallel=True)
-def compare(exact, carried, scalars, X, x, v, F, sigma, V0, b, shares):
-    """Write the body force to b, and the sums of squared errors of each chunk to shares (chunks, 8)."""
-    for c in prange(shares.shape[0]):
+def compare(exact, carried, scalars, X, x, v, F, sigma, V0, b, sums):
+    """Write the body force to b, and the squared errors of each chunk to sums (chunks, 8)."""
+    for c in prange(sums.shape[0]):
         start = c * CHUNK
         end = min(X.shape[0], start + CHUNK)
-        compare_chunk(exact, start, end, carried, scalars, X, x, v, F, sigma, V0, b, shares[c])
+        compare_chunk(exact, start, end, carried, scalars, X, x, v, F, sigma, V0, b, sums[c])
 
 
 @dataclass
@@ -103,12 +103,12 @@ class Norms:
     largest: Floats = field(default_factory=lambda: np.zeros(4))
     last: Floats = field(default_factory=lambda: np.zeros(4))
 
-    def add(self, shares: Floats) -> None:
-        """One more step: `shares` (chunks, 8) from compare."""
+    def add(self, sums: Floats) -> None:
+        """Add one step: `sums` (chunks, 8) from compare."""
         self.steps += 1
-        self.last = shares[:, :4].sum(axis=0) / self.volume
+        self.last = sums[:, :4].sum(axis=0) / self.volume
         self.squares += self.last
-        self.largest = np.maximum(self.largest, shares[:, 4:].max(axis=0))
+        self.largest = np.maximum(self.largest, sums[:, 4:].max(axis=0))
 
     def errors(self) -> dict[str, dict[str, float]]:
         """Every norm of every quantity."""
@@ -124,6 +124,6 @@ class Norms:
         }
 
 
-def new_shares(particles: Particles) -> Floats:
+def new_sums(particles: Particles) -> Floats:
     """Room for the sums of all chunks, (chunks, 8)."""
-    return np.zeros((-(-len(particles) // CHUNK), SHARES))
+    return np.zeros((-(-len(particles) // CHUNK), SUMS))

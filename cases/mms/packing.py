@@ -1,4 +1,4 @@
-"""Whether particles are packed well enough: no full cell without one, no domain too wide, no neighbours too unlike.
+"""Packing of particles, whether it is good enough: no empty full cell, no domain too wide, no two adjacent too unlike.
 
 A cell is full while the body covers all of it. The edge of the body is that of the layout, moved as the exact solution
 moves it; cells that it passes through are not full. Asked for in Moormann, Giridharan & Stolle 2022, section 2.1.
@@ -22,7 +22,7 @@ STRICTLY = 1e-6  # cells: an edge so near to a face runs along it and cuts no ce
 
 @dataclass
 class Packing(Observer):
-    """Counts the particles in full cells, one look `every` so many steps; `fewest` and its `cell` are those of all."""
+    """Observer that counts the particles in full cells, one look `every` so many steps; `fewest` in any `cell`."""
 
     exact: Manufactured
     layout: Layout
@@ -56,15 +56,15 @@ class Packing(Observer):
                 i, j = np.argwhere(full & (held == fewest))[0]
                 self.fewest, self.cell = fewest, (int(i), int(j))
 
-    def begin(self, model: Model, refuse: bool = True) -> None:
-        """Count at the start. Raises RunFailed with the cell if a full one holds no particle, unless told not to."""
+    def begin(self, model: Model, must: bool = True) -> None:
+        """Count at the start. Raises RunFailed with the cell if a full one must hold a particle and does not."""
         self.look(model)
-        if refuse and self.fewest == 0:
+        if must and self.fewest == 0:
             raise RunFailed(FailureKind.EMPTY_CELL, cell=self.cell)
 
     @property
     def packed(self) -> Packed:
-        """What the Result keeps."""
+        """Record for the Result."""
         return Packed(self.fewest, self.cell, self.widest, self.steepest)
 
 
@@ -73,9 +73,9 @@ def outline(layout: Layout) -> tuple[Floats, float]:
 
     Faces that meet have the same bits where they do, or a row of cells could be said to pass both of them or none.
     """
-    places, number = shared_corners(layout)
-    shared = places[number]
-    pairs = np.sort(np.stack([number, np.roll(number, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1) @ (len(places), 1)
+    corners, number = shared_corners(layout)
+    shared = corners[number]
+    pairs = np.sort(np.stack([number, np.roll(number, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1) @ (len(corners), 1)
     order = np.argsort(pairs, kind="stable")
     twice = np.flatnonzero(np.diff(pairs[order]) == 0)
     one, other = order[twice], order[twice + 1]
@@ -125,9 +125,9 @@ def cut(grid: Grid, edge: Floats) -> Mask:
     marked = np.zeros(shape(grid), dtype=bool)
     length = np.hypot(*(edge[:, 1] - edge[:, 0]).T).max() / grid.dx
     for s in np.linspace(0.0, 1.0, 2 + int(8 * length)):
-        place = ((1 - s) * edge[:, 0] + s * edge[:, 1] - grid.lower) / grid.dx
-        cell = np.floor(place).astype(int)
-        part = place - cell
+        position = ((1 - s) * edge[:, 0] + s * edge[:, 1] - grid.lower) / grid.dx
+        cell = np.floor(position).astype(int)
+        part = position - cell
         strictly = ((part > STRICTLY) & (part < 1 - STRICTLY) & (cell >= 0) & (cell < marked.shape)).all(axis=1)
         marked[tuple(cell[strictly].T)] = True
     return marked

@@ -1,4 +1,4 @@
-"""What a run of the MMS case is and gives: Run and Result, data for store, rule and reports."""
+"""Run and Result of the MMS case, data for store, rule and reports."""
 
 from dataclasses import dataclass, field
 from math import inf, isqrt
@@ -52,7 +52,7 @@ class Run(RunRecord):
                 f"cells = {self.cells} cannot be run; choose whole numbers from 2 to 4096, such as 8,16,32,64"
             )
         if self.ppc < 1 or isqrt(self.ppc) ** 2 != self.ppc:
-            raise ValueError(f"{self.ppc} particles per cell is no square number; choose from 1, 4, 9, 16, ...")
+            raise ValueError(f"{self.ppc} particles per cell is not a square number; choose from 1, 4, 9, 16, ...")
         if not 1e-3 <= self.courant <= 10:
             raise ValueError(f"courant = {self.courant} cannot be run; choose 0.001 to 10, 0.4 is usual")
 
@@ -68,12 +68,12 @@ class Run(RunRecord):
 
     @property
     def particles(self) -> int:
-        """Those of a square."""
+        """Number of particles of a square."""
         return self.cells**2 * self.ppc
 
     @property
     def nodes(self) -> int:
-        """Those of a square."""
+        """Number of nodes of a square."""
         return (self.cells + 1) ** 2
 
     def __str__(self) -> str:
@@ -82,7 +82,7 @@ class Run(RunRecord):
 
 @dataclass(frozen=True)
 class Packed:
-    """How well particles were packed. `fewest` in a cell that the body filled, over the run, and such a cell.
+    """Packing of the particles. `fewest` in a cell that the body filled, over the run, and such a cell.
 
     None where the body never filled one. `widest` is the largest side of a domain at first, in cells, and `steepest`
     the largest ratio of the volumes of two adjacent domains.
@@ -96,7 +96,7 @@ class Packed:
 
 @dataclass(frozen=True, kw_only=True)
 class Result(ResultRecord[Run]):
-    """What one Run gave: errors of every quantity in every norm, how particles were packed, and what cannot be seen."""
+    """Outcome of one Run: errors of every quantity in every norm, how particles were packed, and the blind spots."""
 
     run: Run
     packed: Packed | None = None  # see cases/mms/packing.py; None where nobody looked

@@ -1,4 +1,4 @@
-"""The time steps of a study against the stability limit of the solver, before anything runs."""
+"""Time steps of a study against the stability limit of the solver, before anything runs."""
 
 import shlex
 from collections.abc import Iterable, Sequence
@@ -18,9 +18,9 @@ LEAST_COURANT = 1e-3
 
 
 def check_time_steps(
-    specification: str, solution: Any, law: Any, runs: Iterable[Run], courants: Sequence[float]
+    specification: str, solution: Any, material: Any, runs: Iterable[Run], courants: Sequence[float]
 ) -> None:
-    """Raise ValueError, with what to type, where a run takes a step that the solver refuses: dt > dx / (c + |v|).
+    """Raise ValueError, with what to type, where a run takes a step above the stable one: dt > dx / (c + |v|).
 
     `courants` are those that were asked for, the largest last. What passes here also runs: |v| is the largest over the
     body in the half step before the start.
@@ -32,25 +32,25 @@ def check_time_steps(
             f"{label(specification)}: a run would take {longest:.2g} time steps to fill the duration of "
             f"{solution.duration:g}; take a shorter duration or a lower reference speed"
         )
-    behind = 0.5 * max(dt for _, dt in steps.values())
-    c, v = float(law.wave_speed()), fastest(solution, behind)
+    lag = 0.5 * max(dt for _, dt in steps.values())
+    c, v = float(material.wave_speed()), fastest(solution, lag)
     if any(dt * (c + v) > width(solution) / cells for (cells, _), (_, dt) in steps.items()):
         raise ValueError(refusal(specification, solution, c, v, courants))
 
 
-def fastest(solution: Any, behind: float) -> float:
-    """Largest speed of the body over the times from -behind to 0, sampled, with some slack."""
+def fastest(solution: Any, lag: float) -> float:
+    """Largest speed of the body over the times from -lag to 0, sampled, with some slack."""
     import sympy as sp
 
     X, t = sp.symbols("X Y", real=True), sp.Symbol("t", real=True)
     velocity = sp.lambdify((*X, t), list(solution.displacement(X, t).diff(t)), "numpy", cse=True)
     corners = solution.layout(width(solution) / CELLS, 4).corners.reshape(-1, 2).T
-    most = max(float(np.hypot(*velocity(*corners, time)).max()) for time in np.linspace(-behind, 0.0, TIMES))
+    most = max(float(np.hypot(*velocity(*corners, time)).max()) for time in np.linspace(-lag, 0.0, TIMES))
     return most * (1 + SLACK)
 
 
 def refusal(specification: str, solution: Any, c: float, v: float, courants: Sequence[float]) -> str:
-    """The largest Courant number at this reference speed and the least speed at this number, as they are typed."""
+    """Line with the largest Courant number at this speed and the least speed at this number, as they are typed."""
     C, courant = float(solution.C), courants[-1]
     largest = rounded(C / (c + v), floor)
     ways = []
@@ -75,7 +75,7 @@ def refusal(specification: str, solution: Any, c: float, v: float, courants: Seq
 
 
 def speed_parameter(solution: Any) -> str:
-    """The parameter that is the reference speed, as it is typed; empty where none is."""
+    """Parameter that is the reference speed, as it is typed; empty where none is."""
     for name, field in parameters_of(solution).items():
         if getattr(solution, field.name) == solution.C:
             try:
@@ -87,7 +87,7 @@ def speed_parameter(solution: Any) -> str:
 
 
 def rounded(value: float, way: Any) -> float:
-    """Three digits, down or up."""
+    """Value rounded to three digits, down or up."""
     unit = 10.0 ** (floor(log10(value)) - 2)
     return float(f"{way(value / unit) * unit:.3g}")
 

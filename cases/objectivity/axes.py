@@ -1,4 +1,4 @@
-"""The axes of the paper's rotated block: what a run of it is."""
+"""Axes of the paper's rotated block: what a run of it is."""
 
 from dataclasses import dataclass
 from math import ceil, isqrt, pi
@@ -17,7 +17,7 @@ BLOCK, KINEMATIC = "block", "kinematic"  # a CPDI run, or rates along prescribed
 
 @dataclass(frozen=True)
 class Block(RunRecord):
-    """E, nu as in the paper; the density, which it does not give, is that of its Table 1, g that of its section 3.
+    """Rotated block. E, nu are the paper's; the density, not given there, is that of its Table 1, g of its section 3.
 
     Raises ValueError for a number of cells or particles per cell that no block has.
     """
@@ -31,13 +31,13 @@ class Block(RunRecord):
     ppc: int = axis(4, "Particles per cell, square numbers.")
     courant: float = axis(0.4, "dt c / dx, c the compression wave.")
     rate: str = axis(USUAL_RATE, "Objective rate, or a negative control.")
-    frame: bool = axis(False, "The box at rest, with the inertial forces of the turning one.")
+    frame: bool = axis(False, "The box at rest, with the inertial forces of the turning box.")
     part: str = axis(BLOCK, "block: a CPDI run; kinematic: rates along prescribed motions.")
     case: ClassVar[str] = "objectivity"
 
     def __post_init__(self) -> None:
         if self.ppc < 1 or isqrt(self.ppc) ** 2 != self.ppc:
-            raise ValueError(f"{self.ppc} particles per cell is no square number; choose from 1, 4, 9, 16, ...")
+            raise ValueError(f"{self.ppc} particles per cell is not a square number; choose from 1, 4, 9, 16, ...")
         if not 4 <= self.cells <= 128:
             raise ValueError(f"{self.cells} cells along the block must be from 4 to 128: its walls are a cell thick")
         if self.rate not in (*available(RATES), *available(NEGATIVE_CONTROLS)):
@@ -48,16 +48,16 @@ class Block(RunRecord):
             raise ValueError("L, E, rho0, g and courant must be above zero, and nu between -1 and 0.5")
 
     @property
-    def law(self) -> "Hypoelastic":
-        """The paper's linear elastic material."""
+    def material(self) -> "Hypoelastic":
+        """Linear elastic material of the paper."""
         from mpm_verify.solver.material.hypoelastic import Hypoelastic
 
         return Hypoelastic(E=self.E, nu=self.nu, rho0=self.rho0, rate=self.rate)
 
     @property
     def steps(self) -> int:
-        """Time steps of each second."""
-        return ceil(self.law.wave_speed() / (self.courant * self.L / self.cells))
+        """Number of time steps in each second."""
+        return ceil(self.material.wave_speed() / (self.courant * self.L / self.cells))
 
     @property
     def sigma_v(self) -> float:
@@ -65,18 +65,18 @@ class Block(RunRecord):
         return -self.rho0 * self.g * self.L / 2
 
     @property
-    def share(self) -> float:
+    def inertial_fraction(self) -> float:
         """Inertial fraction w^2 L / g."""
         return OMEGA**2 * self.L / self.g
 
     @property
     def particles(self) -> int:
-        """Those of the block."""
+        """Number of particles of the block."""
         return self.cells**2 * self.ppc
 
     @property
     def nodes(self) -> int:
-        """Those of a box that holds it at every angle."""
+        """Number of nodes of a grid that holds the block at every angle."""
         return (3 * self.cells // 2 + 3) ** 2
 
     @property

@@ -1,4 +1,4 @@
-"""The turning block held against its closed form, its inertial fraction, and every negative control on the same run."""
+"""Turning block held against its closed form, its inertial fraction, and every negative control on the same run."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -19,13 +19,13 @@ Results = Mapping[str, ResultRecord[Block]]
 
 
 def blocks(block: Block) -> dict[str, Block]:
-    """The runs: as printed, a hundredth of it, the inertial forces alone, and each negative control."""
+    """Runs by name: as printed, a hundredth of it, the inertial forces alone, and each negative control."""
     named = {PRINTED: block, SMALL: replace(block, L=block.L / 100), REST: replace(block, frame=True)}
     return named | {name: replace(block, rate=name) for name in available(NEGATIVE_CONTROLS)}
 
 
 def turning(curve: Mapping[str, Floats]) -> NDArray[np.bool_]:
-    """Which samples are of the turn."""
+    """Mask of the samples of the turn."""
     late: NDArray[np.bool_] = curve["t"] > 1.0 + 1e-9
     return late
 
@@ -41,7 +41,7 @@ def misses(curve: Mapping[str, Floats], block: Block) -> Floats:
 
 
 def numbers(block: Block, mean: Mapping[str, Floats]) -> dict[str, float]:
-    """What a run that came to its end is held against and told by; stresses in units of |sigma_v|.
+    """Numbers of a run that came to its end, by which it is checked and told; stresses in units of |sigma_v|.
 
     `xx_ramp`, `yy_ramp` at the end of the ramp, `xx_end`, `yy_end` at that of the turn; `miss` of the closed form,
     largest in the turn; `peak` of the shear stress; `ripple` about linear waves in the ramp, rms; in the turn `own_yy`
@@ -50,7 +50,7 @@ def numbers(block: Block, mean: Mapping[str, Floats]) -> dict[str, float]:
     """
     late, ramp = turning(mean), mean["t"] <= 1.0
     end = int(np.argmin(np.abs(mean["t"] - 1.0)))
-    wave = ramped_column(mean["t"][ramp], block.law.wave_speed(), block.L)
+    wave = ramped_column(mean["t"][ramp], block.material.wave_speed(), block.L)
     own = np.abs(mean["own_xy"][late])
     quarter = max(1, len(own) // 4)
     found = {
@@ -71,7 +71,7 @@ def numbers(block: Block, mean: Mapping[str, Floats]) -> dict[str, float]:
 
 
 def checks(block: Block, results: Results) -> list[Check]:
-    """What the runs are held against; stresses in units of the mean vertical stress at the end of the ramp."""
+    """Checks of the runs; stresses in units of the mean vertical stress at the end of the ramp."""
     ended = {name: results[name].failure for name in (PRINTED, SMALL, REST) if results[name].failure}
     if ended:
         return [Check(GROUP, name, np.nan, 0.0, "absolute", "", failure=why) for name, why in ended.items()]

@@ -23,23 +23,23 @@ Run, Result = Block, ObjectivityResult
 
 @dataclass(frozen=True)
 class ObjectivityAnalysis:
-    """An Examination of each block that all parts are stored of."""
+    """Analysis: an Examination of each block that all parts are stored of."""
 
     examinations: Mapping[str, Examination]
 
     @property
     def checks(self) -> tuple[Check, ...]:
-        """Those of all."""
+        """Checks of all blocks."""
         return gathered(self.examinations)
 
 
 def title(runs: Sequence[Block]) -> str:
-    """What a study of it is called."""
+    """Title of a study."""
     return "Frame indifference of the paper's rotated block"
 
 
 def companions(runs: Sequence[Block]) -> list[Block]:
-    """The runs with a smaller block, the box at rest, every negative control, and the kinematic part."""
+    """Runs with a smaller block, the box at rest, every negative control, and the kinematic part."""
     return [one for run in runs for one in (*blocks(run).values(), replace(run, part=KINEMATIC))]
 
 

@@ -12,7 +12,7 @@ from mpm_verify.solver.state import Floats
 
 
 def rotated(horizontal: Floats | float, vertical: Floats | float, angle: Floats) -> Floats:
-    """R diag(horizontal, vertical) R^T for angles (N,), counter-clockwise, as xx, yy, xy (N,3)."""
+    """Rotated stress R diag(horizontal, vertical) R^T for angles (N,), counter-clockwise, as xx, yy, xy (N,3)."""
     c, s = np.cos(angle), np.sin(angle)
     xx, yy = horizontal * c**2 + vertical * s**2, horizontal * s**2 + vertical * c**2
     stress: Floats = np.stack([xx, yy, (horizontal - vertical) * s * c], axis=-1)
@@ -27,22 +27,22 @@ def ramped_column(t: Floats, c: float, H: float, modes: int = 200) -> Floats:
     n = 2.0 * np.arange(1, modes + 1) - 1
     w = n * np.pi * c / (2 * H)
     late = t[:, None] - np.sin(w * t[:, None]) / w
-    share = 32 / (np.pi * n) ** 3 * np.sign(np.sin(n * np.pi / 2))  # of a mode in the shortening at rest; they sum to 1
-    stress: Floats = -(late * share).sum(axis=1)
+    fraction = 32 / (np.pi * n) ** 3 * np.sign(np.sin(n * np.pi / 2))  # of a mode in the shortening; sum 1
+    stress: Floats = -(late * fraction).sum(axis=1)
     return stress
 
 
 def compressed(stretch: float, lam: float, mu: float, rate: str) -> Floats:
-    """xx, yy, zz of a hypoelastic body stretched along x alone. All rates that turn give (C : ln U), Truesdell not."""
+    """Stress xx, yy, zz of a hypoelastic body stretched along x alone: C : ln U of all rates but Truesdell's."""
     if rate == "truesdell":
-        across = lam * (1 - 1 / stretch)
-        return np.array([(lam + 2 * mu) * (stretch - 1), across, across])
+        lateral = lam * (1 - 1 / stretch)
+        return np.array([(lam + 2 * mu) * (stretch - 1), lateral, lateral])
     stress: Floats = np.array([lam + 2 * mu, lam, lam]) * np.log(stretch)
     return stress
 
 
 def green_naghdi(gamma: Floats) -> Floats:
-    """s11, s22, s12 (N,3) of shears gamma (N,); s22 = -s11, b = atan(gamma/2)."""
+    """Green-Naghdi: s11, s22, s12 (N,3) of shears gamma (N,); s22 = -s11, b = atan(gamma/2)."""
     b = np.arctan(gamma / 2)
     double, log = 2 * b, np.log(np.cos(b))
     s12 = 2 * np.cos(double) * (double - 2 * np.tan(double) * log - np.tan(b))
@@ -51,23 +51,23 @@ def green_naghdi(gamma: Floats) -> Floats:
 
 
 def jaumann(gamma: Floats) -> Floats:
-    """It oscillates: s12 = sin gamma."""
+    """Jaumann, which oscillates: s12 = sin gamma."""
     return deviatoric(1 - np.cos(gamma), np.sin(gamma))
 
 
 def logarithmic(gamma: Floats) -> Floats:
-    """The deviator of 2 ln V: h = asinh(gamma/2)."""
+    """Logarithmic: the deviator of 2 ln V, h = asinh(gamma/2)."""
     h, root = np.arcsinh(gamma / 2), np.sqrt(4 + gamma**2)
     return deviatoric(2 * h * gamma / root, 4 * h / root)
 
 
 def truesdell(gamma: Floats) -> Floats:
-    """s12 = gamma, s11 = gamma^2, s22 = 0."""
+    """Truesdell: s12 = gamma, s11 = gamma^2, s22 = 0."""
     return np.stack([gamma**2, 0 * gamma, gamma], axis=-1)
 
 
 def deviatoric(s11: Floats, s12: Floats) -> Floats:
-    """With s22 = -s11."""
+    """Deviatoric stress: s22 = -s11."""
     return np.stack([s11, -s11, s12], axis=-1)
 
 

@@ -1,4 +1,4 @@
-"""`verify objectivity`: everything about frame indifference that needs no soil, as one Examination."""
+"""Examination of frame indifference: the CPDI runs of the block, rates and negative controls."""
 
 from collections.abc import Mapping
 
@@ -20,7 +20,7 @@ def examination(
     results: Mapping[str, ResultRecord[Block]],
     arrays: Mapping[str, Curves],
 ) -> Examination:
-    """All parts of one block by their names.
+    """Examination of all parts of one block, by their names.
 
     `arrays` are the curves to draw; those of a part may be missing, and decide nothing.
     """
@@ -40,18 +40,18 @@ def examination(
 
 
 def unread(results: Mapping[str, ResultRecord[Block]], arrays: Mapping[str, Curves]) -> list[Remark]:
-    """A remark on the files of curves that cannot be read."""
+    """Remark on the files of curves that cannot be read."""
     files = [f"runs/{result.digest}.npz" for name, result in results.items() if not arrays.get(name)]
     return [Remark(ObjectivityRemark.UNREAD, {"files": ", ".join(files)})] if files else []
 
 
 def curves(block: Block, results: Mapping[str, ResultRecord[Block]], arrays: Mapping[str, Curves]) -> Curves:
-    """What the page draws, and `control/NAME`: what each negative control misses by."""
+    """Curves that the page draws, and `control/NAME`: what each negative control misses by."""
     runs = {name: found for name, found in arrays.items() if name != KINEMATIC and found}
     kept: Curves = {"exact": kinematic.exact_figure2(block, np.linspace(0, 2, 401))}
     kept |= {f"run/{name}": run["mean"] for name, run in runs.items() if run["mean"]["t"].size}
     t = np.linspace(0, 1, 201)
-    kept["wave"] = {"t": t, "yy": ramped_column(t, block.law.wave_speed(), block.L)}
+    kept["wave"] = {"t": t, "yy": ramped_column(t, block.material.wave_speed(), block.L)}
     kept |= {f"field/{name}": run["field"] for name, run in runs.items()}
     kept |= arrays.get(KINEMATIC, {})
     known = results[KINEMATIC].values
@@ -77,7 +77,7 @@ def parameters(block: Block) -> dict[str, float | str]:
         "time step [s]": 1 / block.steps,
         "Courant number": block.courant,
         "unit of stress [Pa]": abs(block.sigma_v),
-        "inertial fraction w^2 L / g": block.share,
+        "inertial fraction w^2 L / g": block.inertial_fraction,
     }
 
 

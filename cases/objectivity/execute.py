@@ -1,4 +1,4 @@
-"""One part of the examination of frame indifference: a CPDI run of the block, or rates along prescribed motions."""
+"""Execution of one part of the study of frame indifference: a CPDI run, or rates along prescribed motions."""
 
 import time
 from collections.abc import Callable
@@ -24,7 +24,7 @@ COARSE = 4  # steps of the stretched turn at which a control of first order is t
 
 @dataclass(frozen=True, kw_only=True)
 class ObjectivityResult(ResultRecord[Block]):
-    """What one part gave: curves to draw in the arrays as `curve/column`, and of the kinematic part the checks.
+    """Outcome of one part: curves to draw in the arrays as `curve/column`, and of the kinematic part the checks.
 
     `values` are those of block.numbers, or of the kinematic part `figure2 NAME`, the distance of a negative control
     from the closed form, `stretched NAME`, its error in the finest stretched turn, and `order NAME` of each rate.
@@ -50,7 +50,7 @@ def execute(run: Block, tick: Callable[[float], None] = lambda fraction: None) -
         run=run, digest=run.digest, status="failed" if failure else "finished", failure=failure, checks=checks,
         values=values, steps=2 * run.steps if run.part == BLOCK else 0, particles=run.particles, dt=1 / run.steps,
         wall_s=time.perf_counter() - started, cpu_s=time.process_time() - used, peak_memory_mb=peak_memory(),
-        environment=environment(), parameters=parameters("material", run.law),
+        environment=environment(), parameters=parameters("material", run.material),
     )  # fmt: skip
     return result, {f"{name}/{key}": values for name, curve in curves.items() for key, values in curve.items()}
 

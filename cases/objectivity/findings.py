@@ -1,4 +1,4 @@
-"""What is to be known of frame indifference, as codes with the numbers of the runs; the words are in reports/sentences.
+"""Findings on frame indifference, as codes with the numbers of the runs; the words are in reports/sentences.
 
 Numbers of stresses are fractions of the mean vertical stress at the end of the ramp.
 """
@@ -23,7 +23,7 @@ Numbers = Mapping[str, float]
 
 
 class ObjectivityRemark(StrEnum):
-    """What came out, what one should know of each part, and where parameters come from."""
+    """Remarks on what came out, on each part, and on where parameters come from."""
 
     TURNS = "objectivity.turns"  # all checks pass: the stress turns with the block
     MISSED = "objectivity.missed"
@@ -48,7 +48,7 @@ class ObjectivityRemark(StrEnum):
 
 
 def findings(block: Block, checks: list[Check], results: Mapping[str, ResultRecord[Block]]) -> list[Remark]:
-    """What came out, from the numbers of all parts; notes on the CPDI runs only where all three came to their end."""
+    """Remarks from the numbers of all parts; notes on the CPDI runs only where all three came to their end."""
     known = results[KINEMATIC].values
     unseen = [name for name in available(NEGATIVE_CONTROLS) if known[f"figure2 {name}"] < UNSEEN]
     runs = [results[name].values for name in (full.PRINTED, full.SMALL, full.REST)]
@@ -59,7 +59,7 @@ def findings(block: Block, checks: list[Check], results: Mapping[str, ResultReco
 
 
 def lead(block: Block, checks: list[Check], small: Numbers, unseen: list[str]) -> Remark:
-    """How many checks missed; where none did, the largest shear stress and which controls Figure 2 does not see."""
+    """Remark on how many checks missed; where none did, the largest shear stress, and what Figure 2 misses."""
     missed = sum(check.outcome != "PASS" for check in checks)
     if missed:
         return Remark(ObjectivityRemark.MISSED, {"missed": missed, "checks": len(checks)})
@@ -75,21 +75,26 @@ def largest_shear(block: Block) -> float:
 
 
 def of_runs(block: Block, printed: Numbers, small: Numbers, rest: Numbers) -> list[Remark]:
-    """Numbers of the block as printed, of the small one, and of the one that is not turned."""
+    """Remarks on the block as printed, of the small one, and of the one that is not turned."""
     away = {"printed": printed["own_yy"], "rest": rest["own_yy"], "small": small["own_yy"]}
-    inertia = {"L": block.L, "fraction": block.share, "small_fraction": block.share / 100, **away}
+    inertia = {
+        "L": block.L,
+        "fraction": block.inertial_fraction,
+        "small_fraction": block.inertial_fraction / 100,
+        **away,
+    }
     largest = max(small["particle"], printed["particle"])
     return [
         Remark(ObjectivityRemark.SWAP, {"exact": largest_shear(block), "peak": small["peak"]}, full.GROUP),
         Remark(ObjectivityRemark.CO_ROTATED, {"early": printed["early"], "end": printed["late"]}, full.GROUP),
         Remark(ObjectivityRemark.INERTIA, inertia, INERTIA),
-        Remark(ObjectivityRemark.RIPPLE, {"L": block.L, "period": 4 * block.L / block.law.wave_speed()}, INERTIA),
+        Remark(ObjectivityRemark.RIPPLE, {"L": block.L, "period": 4 * block.L / block.material.wave_speed()}, INERTIA),
         Remark(ObjectivityRemark.PARTICLES, {"largest": largest}, INERTIA),
     ]
 
 
 def of_controls_and_rates(known: Numbers, unseen: list[str]) -> list[Remark]:
-    """Which controls Figure 2 cannot see, orders of rates and controls, how near rates are in simple shear."""
+    """Remarks on controls that Figure 2 cannot see, on orders, and on how near rates are in simple shear."""
     right = [known[f"order {name}"] for name in available(RATES)]
     shear = [float(SIMPLE_SHEAR[rate](np.array([MODERATE]))[0, 2]) for rate in available(RATES)]
     spread = {"shear": MODERATE, "spread": max(shear) / min(shear) - 1, "rates": len(shear)}

@@ -14,24 +14,24 @@ Path = Callable[[float], Floats]
 
 @dataclass(frozen=True)
 class Followed:
-    """Times (N+1,), F (N+1,2,2) and Cauchy stress (N+1,4) along a path."""
+    """Path of a material point: times (N+1,), F (N+1,2,2) and Cauchy stress (N+1,4) along a path."""
 
     t: Floats
     F: Floats
     sigma: Floats
 
 
-def follow(law: Material, path: Path, steps: int, sigma0: Floats | None = None) -> Followed:
-    """The law along F(t), t from 0 to 1 in equal steps, from the stress sigma0 (4,), zero where there is none."""
+def follow(material: Material, path: Path, steps: int, sigma0: Floats | None = None) -> Followed:
+    """Follow a material along F(t), t from 0 to 1 in equal steps, from the stress sigma0 (4,), or zero."""
     t = np.linspace(0.0, 1.0, steps + 1)
     F = np.array([path(float(time)) for time in t])
     p = Particles(np.zeros((1, 2)), np.ones(1), np.ones(1), np.zeros((1, 0)))
     p.F[0], p.sigma[0] = F[0], np.zeros(4) if sigma0 is None else sigma0
-    law.start(p)
+    material.start(p)
     sigma = [p.sigma[0].copy()]
     for deformed in F[1:]:
         p.F[0] = deformed
-        law.update(p, 1.0 / steps)
+        material.update(p, 1.0 / steps)
         sigma.append(p.sigma[0].copy())
     return Followed(t, F, np.array(sigma))
 
@@ -42,7 +42,7 @@ def stretched_turn(t: float) -> Floats:
 
 
 def squeezed_then_turned(strain: float) -> Path:
-    """The paper's Figure 2: F_yy = exp(strain t) in the first half of the time, then a quarter turn."""
+    """Motion of the paper's Figure 2: F_yy = exp(strain t) in the first half of the time, then a quarter turn."""
 
     def path(t: float) -> Floats:
         return turn(np.pi / 2 * max(0.0, 2 * t - 1)) @ np.diag([1.0, np.exp(strain * min(1.0, 2 * t))])

@@ -25,8 +25,8 @@ PLANE = np.array([1.0, 1.0, 0.0, 2.0])  # the norm of the tensor in the plane
 def figure2(block: Block, rate: str, steps: int = 200) -> dict[str, Floats]:
     """Stress over |sigma_v| along the motion of Figure 2: t in [0, 2], xx, yy, xy, own_xy in the turned frame."""
     M = block.E * (1 - block.nu) / ((1 + block.nu) * (1 - 2 * block.nu))
-    law = replace(block.law, rate=rate)
-    found = follow(law, squeezed_then_turned(block.sigma_v / M), 2 * steps)
+    material = replace(block.material, rate=rate)
+    found = follow(material, squeezed_then_turned(block.sigma_v / M), 2 * steps)
     sigma, t = found.sigma / abs(block.sigma_v), 2 * found.t
     angle = np.pi / 2 * np.maximum(0.0, t - 1)
     own = (sigma[:, 1] - sigma[:, 0]) / 2 * np.sin(2 * angle) + sigma[:, 3] * np.cos(2 * angle)
@@ -34,7 +34,7 @@ def figure2(block: Block, rate: str, steps: int = 200) -> dict[str, Floats]:
 
 
 def exact_figure2(block: Block, t: Floats) -> dict[str, Floats]:
-    """The closed form of the same: stress grows in proportion to gravity and is then turned with the block."""
+    """Closed form of the same: stress grows in proportion to gravity and is then turned with the block."""
     K0, angle = block.nu / (1 - block.nu), np.pi / 2 * np.maximum(0.0, t - 1)
     load = np.minimum(t, 1.0)
     xx, yy, xy = rotated(-K0 * load, -load, angle).T
@@ -49,9 +49,9 @@ def distance(block: Block, found: Mapping[str, Floats]) -> float:
 
 def order_errors(rate: str, counts: tuple[int, ...] = STEPS) -> Floats:
     """Relative error at the end of the stretched quarter turn for each number of steps."""
-    law = Hypoelastic(E=1.0, rate=rate)
-    xx, yy, _ = compressed(0.8, law.lam, law.mu, rate)
-    ends = np.array([follow(law, stretched_turn, steps).sigma[-1] for steps in counts])
+    material = Hypoelastic(E=1.0, rate=rate)
+    xx, yy, _ = compressed(0.8, material.lam, material.mu, rate)
+    ends = np.array([follow(material, stretched_turn, steps).sigma[-1] for steps in counts])
     away = ends - np.array([yy, xx, 0.0, 0.0])  # turned by 90 degrees
     errors: Floats = np.sqrt((away**2 @ PLANE) / (xx**2 + yy**2))
     return errors
@@ -63,14 +63,14 @@ def slope(errors: Floats) -> float:
 
 
 def simple_shear(rate: str, gamma: float, steps: int) -> Floats:
-    """s11, s12 over G (2,)."""
-    law = Hypoelastic(E=2.6, nu=0.3, rate=rate)  # G = 1
-    end: Floats = follow(law, sheared(gamma), steps).sigma[-1, [0, 3]]
+    """Stresses s11, s12 over G (2,) at the shear gamma."""
+    material = Hypoelastic(E=2.6, nu=0.3, rate=rate)  # G = 1
+    end: Floats = follow(material, sheared(gamma), steps).sigma[-1, [0, 3]]
     return end
 
 
 def figure2_checks(block: Block) -> list[Check]:
-    """Green-Naghdi along the motion of Figure 2, against (8.1): the turn is exact, the compression second order."""
+    """Checks of Green-Naghdi along the motion of Figure 2, against (8.1): the turn is exact, compression of order 2."""
     found = figure2(block, "green_naghdi")
     away = distance(block, found)
     turn_only = found["t"] >= 1
@@ -86,7 +86,7 @@ def figure2_checks(block: Block) -> list[Check]:
 
 
 def order_checks(errors: dict[str, Floats]) -> list[Check]:
-    """Orders as stated by each plug-in, to a tenth; what has order 0 misses for good."""
+    """Checks of the orders that plug-ins state, to a tenth; what has order 0 misses for good."""
     checks = []
     for name, found in errors.items():
         order = objective(name).order
@@ -95,7 +95,7 @@ def order_checks(errors: dict[str, Floats]) -> list[Check]:
 
 
 def shear_checks() -> list[Check]:
-    """Each rate at three shears, by 100 steps per unit of shear, and the order of its error at the largest."""
+    """Checks of each rate at three shears, by 100 steps per unit of shear, and of its order at the largest."""
     checks = []
     for rate in available(RATES):
         for gamma in GAMMAS:
@@ -110,7 +110,7 @@ def shear_checks() -> list[Check]:
 
 
 def shear_order(rate: str) -> float:
-    """Of the stress at shear 8, from 200 to 800 steps."""
+    """Order of the stress at shear 8, from 200 to 800 steps."""
     exact = SIMPLE_SHEAR[rate](np.array([8.0]))[0, [0, 2]]
     few, many = (float(np.linalg.norm(simple_shear(rate, 8.0, steps) - exact)) for steps in (200, 800))
     return float(np.log(few / many) / np.log(4))

@@ -1,13 +1,13 @@
-"""The paper's rotated block (section 2.2, Figure 2) as a run: gravity ramped over a second, then a quarter turn.
+"""Rotated block of the paper (section 2.2, Figure 2) as a run: gravity ramped over a second, then a quarter turn.
 
 A block of side L lies in an open box on a grid that does not turn. In the first second gravity grows to g: rollers on
 the left, right and bottom confine the block. In the next second box, block and gravity turn by 90 degrees about the
 middle of the block. Gravity turns too, as in the paper: with a fixed one the stress could not follow the block.
 
 The walls of the turning box are nodes with the box's rigid velocity. A node belongs to a wall when its hat function
-reaches beyond it: before the turn these are the nodes on and behind the wall, and during it none is left free whose
-neighbours are partly empty, which no traction would balance. The velocity of a step is the chord of the rotation,
-(R(w dt) - I)(x - c)/dt, which hats hold exactly; so the box turns by exactly w dt a step.
+reaches beyond it: before the turn these are the nodes on and behind the wall, and during it none is left free
+beside cells that are partly empty, which no traction would balance. The velocity of a step is the chord of the
+rotation, (R(w dt) - I)(x - c)/dt, which hats hold exactly; so the box turns by exactly w dt a step.
 
 With `frame` nothing turns: the same box at rest feels the inertial forces of the turning one (centrifugal, Coriolis).
 That run shows the inertial fraction alone, without any rotation of stress.
@@ -41,13 +41,13 @@ def turn(angle: float) -> Floats:
 
 
 def angle_at(t: float) -> float:
-    """Of the box."""
+    """Angle of the box at a time."""
     return OMEGA * max(0.0, t - RAMP)
 
 
 @dataclass
 class Box:
-    """The walls: `rule` of solver.boundary.MovingWalls. `turns` is false for the box at rest."""
+    """Walls of the box: `rule` of solver.boundary.MovingWalls. `turns` is false for the box at rest."""
 
     L: float
     dx: float
@@ -58,7 +58,7 @@ class Box:
         self.centre = np.full(2, self.L / 2)
 
     def __call__(self, nodes: Floats, t: float, dt: float) -> tuple[NDArray[np.bool_], Floats, Floats]:
-        """held, value, rate (n,2) for the step from t to t + dt: rollers at first, the rigid motion of the box then."""
+        """Held components, values, rates (n,2) for the step from t to t + dt: rollers, then the rigid motion."""
         if t < RAMP - dt / 2:
             near = self.reaches(nodes, 0.0)
             held = np.stack([near[:, :2].any(axis=1), near[:, 2]], axis=1)
@@ -79,7 +79,7 @@ class Box:
 
 @dataclass
 class Gravity:
-    """Body force (P,2) of the particles; of the box at rest, with the inertial forces of the turning one."""
+    """Body force (P,2) of the particles; in the box at rest, with the inertial forces of the turning box."""
 
     block: Block
     centre: Floats = field(init=False)
@@ -100,17 +100,17 @@ class Gravity:
 
 
 def setup(block: Block) -> Model:
-    """The block at rest, free of stress, in a grid that holds it at every angle."""
+    """Block at rest, free of stress, in a grid that holds it at every angle."""
     dx, dt = block.L / block.cells, 1.0 / block.steps
     margin = ceil(0.25 * block.cells) * dx
     grid = Grid(dx, np.full(2, -margin), np.full(2, block.L + margin))
     particles = Cpdi().populate(rectangle(np.zeros(2), np.full(2, block.L), dx, block.ppc), block.rho0)
     walls = moving(grid, Box(block.L, dx, not block.frame))
-    return Model(grid, particles, Cpdi(), block.law, walls, dt)
+    return Model(grid, particles, Cpdi(), block.material, walls, dt)
 
 
 def spin(model: Model, block: Block) -> None:
-    """The rigid velocity of the box, half a step behind the places as v is, added to what the particles have."""
+    """Add the rigid velocity of the box to that of the particles, at the time level of v: half a step before x."""
     back = np.eye(2) - turn(-OMEGA * model.dt)
     model.particles.v += (model.particles.x - block.L / 2) @ back.T / model.dt
 
@@ -136,7 +136,7 @@ def execute(block: Block, tick: Callable[[float], None] = lambda fraction: None)
                 own = in_box(model, block)
                 rows.append(row(model, block, own))
                 if step > block.steps:
-                    total[model.particles.id] += own  # rows change places when particles cross cells
+                    total[model.particles.id] += own  # rows move when particles cross cells
                     looks += 1
     except RunFailed as ended:
         failure = ended.failure
@@ -157,6 +157,6 @@ def in_box(model: Model, block: Block) -> Floats:
 
 
 def row(model: Model, block: Block, own: Floats) -> tuple[float, ...]:
-    """One line of `mean`, in units of stress."""
+    """Row of `mean`, in units of stress."""
     angle = 0.0 if block.frame else angle_at(model.time)
     return (model.time, angle, *model.particles.sigma.mean(axis=0), *own.mean(axis=0), float(np.abs(own[:, 2]).max()))

@@ -5,7 +5,7 @@ velocity V sin(pi X / L). Then u = V / omega sin(pi X / L) sin(omega t) with ome
 the material, as long as V / c is small. The frequency is measured between the first and the last zero of the amplitude
 of the mode, sum m u sin(pi X / L), over `periods`.
 
-What a lumped mass and central differences make of it is known: too low by (pi h / L)^2 (1 - C^2) / 24 at the Courant
+Lumped mass and central differences make it too low by (pi h / L)^2 (1 - C^2) / 24 at the Courant
 number C (Belytschko & Mullen 1978, doi:10.1002/nme.1620120103, for finite elements). Particles add to it: a velocity
 that goes to the grid and back is multiplied twice by 1 - (pi h / L)^2 m / 2, where m is the mean of N s^2 over the
 particles at s cells from a node. With hats and particles at the quarter points, m = 3/16.
@@ -24,13 +24,13 @@ from mpm_verify.solver.plugins import canonical as canonical_name
 __all__ = ["AXES", "QUICK", "Result", "Run"]
 
 SMALL = 1e-4  # amplitude up to which the bar is linear
-HATS = ("mpm", "gimp", "cpgimp", "cpdi", "cpdi2")  # whose weights are those of hats at the quarter points
+HATS = ("mpm", "gimp", "cpgimp", "cpdi", "cpdi2")  # methods whose weights are those of hats at the quarter points
 FINE = 1 / 64  # where the closed form is close enough to be held against
 QUANTITIES, NORMS, JUDGED = ("frequency",), ("relative",), (("frequency", "relative"),)
 
 
 def title(runs: Sequence[Run]) -> str:
-    """What a study of bars is called."""
+    """Title of a study of bars."""
     methods = dict.fromkeys(label(run.method).upper() for run in runs)
     return f"Frequency of the first axial mode of a bar: {', '.join(methods)}"
 
@@ -43,7 +43,7 @@ def canonical(values: dict[str, Any]) -> dict[str, Any]:
 
 
 def expectation(run: Run, quantity: str, norm: str) -> Expectation | None:
-    """The order that the method declares, with the error of the closed form above where the weights are hats."""
+    """Order that the method declares, with the error of the closed form above where the weights are hats."""
     if run.transfer != Run.transfer or run.amplitude > SMALL:
         return None
     basis = create(METHODS, run.method)

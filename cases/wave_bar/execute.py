@@ -23,7 +23,7 @@ LENGTH, ROWS = 1.0, 4  # of the bar, and cells of its height
 
 
 def setup(run: Run) -> tuple[Model, float, int]:
-    """The bar at t = 0, its exact frequency (radians a time), and the number of steps."""
+    """Bar at t = 0, its exact frequency (radians a time), and the number of steps."""
     basis: Any = create(METHODS, run.method)
     material: Any = create(MATERIALS, run.material)
     dx, c = LENGTH / run.cells, material.wave_speed()
@@ -43,7 +43,7 @@ class Amplitude(Observer):
         self.q = [0.0]
 
     def after_step(self, model: Model) -> None:
-        """Keep it."""
+        """Keep the amplitude."""
         p = model.particles
         mode = np.sin(pi * p.X[:, 0] / LENGTH)
         self.q.append(float((p.m * (p.x[:, 0] - p.X[:, 0]) * mode).sum() / p.m.sum()))
@@ -93,7 +93,7 @@ def no_load(particles: Particles, t: float) -> None:
 
 
 def frequency(t: Floats, q: Floats) -> float:
-    """Radians a time between the first and the last zero of q (N,) at the times t (N,); the start at rest is one.
+    """Angular frequency between the first and the last zero of q (N,) at the times t (N,); the start at rest is one.
 
     Zeros lie on straight lines between two steps: q'' vanishes with q, so this misses by the cube of the step.
     """

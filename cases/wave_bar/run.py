@@ -1,4 +1,4 @@
-"""What a run of the wave bar is and gives."""
+"""Run and Result of the wave bar."""
 
 from dataclasses import dataclass
 from math import isqrt
@@ -32,11 +32,11 @@ class Run(RunRecord):
                 f"cells = {self.cells} cannot be run; choose whole numbers from 4 to 4096, such as 8,16,32"
             )
         if self.ppc < 1 or isqrt(self.ppc) ** 2 != self.ppc:
-            raise ValueError(f"{self.ppc} particles per cell is no square number; choose from 1, 4, 9, 16, ...")
+            raise ValueError(f"{self.ppc} particles per cell is not a square number; choose from 1, 4, 9, 16, ...")
         if not 1e-3 <= self.courant <= 10:
             raise ValueError(f"courant = {self.courant} cannot be run; choose 0.001 to 10, 0.4 is usual")
         if not 0 < self.amplitude <= 0.1 or not 1 <= self.periods <= 1000:
-            raise ValueError("amplitude must be above 0 and at most 0.1, periods from 1 to 1000")
+            raise ValueError("choose an amplitude above 0 and at most 0.1, and periods from 1 to 1000")
 
     @property
     def cost(self) -> float:
@@ -45,12 +45,12 @@ class Run(RunRecord):
 
     @property
     def particles(self) -> int:
-        """Those of four rows of cells."""
+        """Number of particles in four rows of cells."""
         return 4 * self.cells * self.ppc
 
     @property
     def nodes(self) -> int:
-        """Those of four rows of cells."""
+        """Number of nodes of four rows of cells."""
         return 5 * (self.cells + 1)
 
     def __str__(self) -> str:
@@ -59,6 +59,6 @@ class Run(RunRecord):
 
 @dataclass(frozen=True, kw_only=True)
 class Result(ResultRecord[Run]):
-    """What one Run gave: the relative error of the frequency, and the frequency itself."""
+    """Outcome of one Run: the relative error of the frequency, and the frequency itself."""
 
     run: Run

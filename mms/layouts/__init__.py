@@ -1,1 +1,1 @@
-"""How particles are spread over a body: a plug-in is a file, called with (solution, exact, dx, ppc, offset)."""
+"""Layouts of particles over a body: a plug-in is a file, called with (solution, exact, dx, ppc, offset)."""

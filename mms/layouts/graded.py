@@ -1,4 +1,4 @@
-"""As many particles as the uniform layout has, moved to where strain is expected; see mms/grading.py."""
+"""Layout of as many particles as the uniform one has, moved to where strain is expected; see mms/grading.py."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -10,8 +10,8 @@ from mpm_verify.solver.layout import Layout, Offset
 
 @dataclass(frozen=True)
 class Graded(Grading):
-    """`ppc` is the mean number in a cell."""
+    """Graded layout, where `ppc` is the mean number in a cell; parameters as of Grading."""
 
     def __call__(self, solution: Any, exact: Manufactured, dx: float, ppc: int, offset: Offset) -> Layout:
-        """Rectangles. Raises ValueError for a body that is none."""
+        """Lay rectangles, see Grading.lay."""
         return self.lay(solution, exact, dx, ppc, offset, fewer=False)

@@ -1,4 +1,4 @@
-"""The uniform layout where strain is largest, and fewer particles elsewhere; see mms/grading.py."""
+"""Layout that is uniform where strain is largest, and has fewer particles elsewhere; see mms/grading.py."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -10,8 +10,11 @@ from mpm_verify.solver.layout import Layout, Offset
 
 @dataclass(frozen=True)
 class Thinned(Grading):
-    """`ppc` is the number in a cell where strain is largest; where there is none, ppc / contrast^2."""
+    """Thinned layout, with `ppc` particles in a cell where strain is largest; parameters as of Grading.
+
+    Where there is no strain, ppc / contrast^2.
+    """
 
     def __call__(self, solution: Any, exact: Manufactured, dx: float, ppc: int, offset: Offset) -> Layout:
-        """Rectangles. Raises ValueError for a body that is none."""
+        """Lay rectangles, see Grading.lay."""
         return self.lay(solution, exact, dx, ppc, offset, fewer=True)

@@ -1,4 +1,4 @@
-"""The regular layout of a solution: the same number of particles in every cell."""
+"""Regular layout of a solution: the same number of particles in every cell."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -9,12 +9,12 @@ from mpm_verify.solver.layout import Layout, Offset
 
 @dataclass(frozen=True)
 class Uniform:
-    """As the solution lays its body out."""
+    """Uniform layout, as the solution lays its body out; no parameters."""
 
     def check(self, solution: Any) -> None:
-        """Every body can be laid out so."""
+        """Do nothing: every body can be laid out so."""
 
     def __call__(self, solution: Any, exact: Manufactured, dx: float, ppc: int, offset: Offset) -> Layout:
-        """`ppc` particles in each cell of side dx."""
+        """Lay `ppc` particles, a square number, in each cell of side dx."""
         layout: Layout = solution.layout(dx, ppc, offset)
         return layout

@@ -1,6 +1,6 @@
-"""A solution of a user's own: a file with two functions, made into a class like those of the library.
+"""Solution of a user's own: a file with two functions, made into a class like those of the library.
 
-    displacement(X, t)   u as a SymPy Matrix of two components; X = (X, Y), reference place and time as symbols
+    displacement(X, t)   u as a SymPy Matrix of two components; X = (X, Y), reference position and time as symbols
     domain()             {"lower": (0, 0), "upper": (1, 1), "duration": 0.02, "speed": 100}: a rectangle, the time
                          that a study covers, and the reference speed C in dt = courant dx / C
 
@@ -34,8 +34,8 @@ ARGUMENTS = {"displacement": ["X", "t"], "domain": []}
 NEEDED, OPTIONAL = {"lower", "upper", "duration", "speed"}, {"material", "boundary", "order"}
 KINDS = ("fixed", "roller", "free")
 HUGE = 1e30  # a larger number of domain() overflows on the way
-NO_NUMBERS = (str, bytes, bool, np.bool_, complex, np.complexfloating, np.ndarray)  # though float() takes some of them
-ROOM = 0.25  # of the largest displacement: how much further than the exact one a free edge may move
+NOT_NUMBERS = (str, bytes, bool, np.bool_, complex, np.complexfloating, np.ndarray)  # though float() takes some of them
+ROOM = 0.25  # fraction of the largest displacement by which a free edge may move further than the exact one
 
 
 def edges(solution: Any) -> Any:
@@ -49,9 +49,12 @@ def edges(solution: Any) -> Any:
 
 
 class Own:
-    """The contract of a solution, from the two functions of a file; subclasses have its parameters as fields.
+    """Solution from the two functions of a file; subclasses have its parameters as fields.
 
-    Raises ValueError with one line that begins with the file's name.
+    Raises
+    ------
+    ValueError
+        One line that begins with the file's name.
     """
 
     path: ClassVar[Path]
@@ -61,7 +64,7 @@ class Own:
         self.named()
 
     def displacement(self, X: Sequence["sp.Symbol"], t: "sp.Symbol") -> "sp.Matrix":
-        """u of the reference position X and the time t; two expressions in X, Y and t."""
+        """Displacement u (2,) of the reference position X and the time t, expressions in X, Y and t."""
         import sympy as sp
 
         value = self.call("displacement", tuple(X), t)
@@ -78,7 +81,7 @@ class Own:
 
     @cached_property
     def domain(self) -> dict[str, Any]:
-        """What domain() returns, checked."""
+        """Dictionary that domain() returns, checked."""
         domain = self.call("domain")
         words = (
             "it must return a dictionary with lower, upper, duration and speed, and perhaps material, boundary, order"
@@ -101,7 +104,7 @@ class Own:
         return {**domain, **box, **sizes, "material": material}
 
     def named(self) -> tuple[str, ...] | None:
-        """The boundary that domain() names, one a side; None where it names none."""
+        """Boundary that domain() names, one a side; None where it names none."""
         named = self.domain.get("boundary")
         if named is None:
             return None
@@ -115,20 +118,20 @@ class Own:
         return sides
 
     def corner(self, name: str, value: Any) -> Floats:
-        """A corner (2,) of domain()."""
+        """Corner (2,) of domain()."""
         several = isinstance(value, tuple | list) or (isinstance(value, np.ndarray) and value.ndim > 0)
         if not several or len(value) != 2:
             raise ValueError(f"{self.path}: domain has {name} = {shortened(value)}; write two numbers")
         return np.array([self.number(name, one) for one in value])
 
     def number(self, name: str, value: Any) -> float:
-        """A finite number of domain(); a word that looks like one is none."""
+        """Finite number of domain(); a word that looks like one is not taken."""
         try:
-            number = np.nan if isinstance(value, NO_NUMBERS) else float(value)
+            number = np.nan if isinstance(value, NOT_NUMBERS) else float(value)
         except (TypeError, ValueError, OverflowError):
             number = np.nan
         if not abs(number) < HUGE:
-            raise ValueError(f"{self.path}: domain has {name} = {shortened(repr(value))}, which is no finite number")
+            raise ValueError(f"{self.path}: domain has {name} = {shortened(repr(value))}, which is not a finite number")
         return number
 
     lower = property(lambda self: self.domain["lower"])
@@ -141,7 +144,7 @@ class Own:
 
     @property
     def boundary(self) -> str | tuple[str, ...]:
-        """One kind where all four sides have it, otherwise those of left, right, bottom, top.
+        """Kind that all four sides have, otherwise those of left, right, bottom, top.
 
         Raises ValueError where an edge does what no wall imposes.
         """
@@ -164,17 +167,17 @@ class Own:
         return room if free.all() else room * free
 
     def layout(self, dx: float, ppc: int, offset: Offset = CENTRED) -> Layout:
-        """Square domains, `ppc` in a cell of side dx."""
+        """Layout of square domains, `ppc` in a cell of side dx."""
         return rectangle(self.lower, self.upper, dx, ppc, offset)
 
     def call(self, name: str, *arguments: Any) -> Any:
-        """What a function of the file returns with those parameters that it has; asked for once a process."""
+        """Value of a function of the file with those parameters that it has; asked for once a process."""
         return called(self, name, arguments)
 
 
 @cache
 def called(solution: Own, name: str, arguments: tuple[Any, ...]) -> Any:
-    """What a function of the file returns."""
+    """Value of a function of a solution's file."""
     function = solution.functions[name]
     typed = parameters_of(type(solution))
     mine = {key: getattr(solution, typed[key].name) for key in parameters(solution.path, name, function)}
@@ -182,13 +185,13 @@ def called(solution: Own, name: str, arguments: tuple[Any, ...]) -> Any:
 
 
 def load(path: Path) -> type:
-    """The class that a file makes. Raises ValueError with one line and the file's line."""
+    """Class that a file makes. Raises ValueError with one line and the file's line."""
     return made(path, module_of(path))
 
 
 @cache
 def made(path: Path, module: ModuleType) -> type:
-    """The class of a module: of its two functions, or that which it holds. Raises ValueError."""
+    """Class of a module: made of its two functions, or that which it holds. Raises ValueError."""
     functions = {name: vars(module).get(name) for name in ARGUMENTS}
     if not any(functions.values()) and any(isinstance(c, type) for c in vars(module).values()):
         return completed(path, own_class(SOLUTIONS, path))
@@ -205,7 +208,7 @@ def made(path: Path, module: ModuleType) -> type:
 
 
 def completed(path: Path, plugin: Any) -> type:
-    """A class of a user's file, with what checks ask for besides; its displacement is asked for once a process."""
+    """Complete a class of a user's file with what checks ask for; its displacement is asked for once a process."""
     plugin.path = path
     plugin.order = getattr(plugin, "order", None)
     plugin.edges = cached_property(edges)
@@ -225,9 +228,9 @@ def sides(solution: Any) -> tuple[str, ...]:
 
 
 def derived(solution: Any) -> str:
-    """What a user's solution returns, as text: u in X, Y and t, and all numbers and words that a run takes from it.
+    """Text of what a user's solution returns: u in X, Y and t, and all numbers and words that a run takes from it.
 
-    Of a class, which may compute what it likes, its file counts too.
+    The file of a class counts too: it may compute what it likes.
     """
     import sympy as sp
 

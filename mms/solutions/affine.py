@@ -25,7 +25,22 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Affine(Square):
-    """a, b, c, d: amplitudes of the four components of F; L: side; C: speed that sets the period."""
+    """Affine motion.
+
+    Parameters
+    ----------
+    L
+        Side of the square, above zero.
+    C
+        Speed that sets the period, above zero.
+    a, b, c, d
+        Amplitudes of the four components of F, each below 0.25 in size.
+
+    Raises
+    ------
+    ValueError
+        For a parameter that is out of range.
+    """
 
     a: float = 0.1
     b: float = 0.08
@@ -40,18 +55,31 @@ class Affine(Square):
 
     @property
     def margin(self) -> float:
-        """The largest displacement is 0.61 L with all parameters at their bounds."""
+        """Room around the square: the largest displacement is 0.61 L with all parameters at their bounds."""
         return 0.65 * self.L
 
     def displacement(self, X: Sequence["sp.Symbol"], t: "sp.Symbol") -> "sp.Matrix":
-        """u of the reference place X and the time t."""
+        """Displacement u (2,) of the reference position X and the time t."""
         import sympy as sp
 
         angle = sp.pi * self.exact(self.C) * t / self.exact(self.L)
         return sp.Matrix(self._matrix(sp.sin(angle), 1 - sp.cos(angle))) * sp.Matrix(list(X))
 
     def walls(self, nodes: Floats, t: float, dt: float) -> tuple[NDArray[np.bool_], Floats, Floats]:
-        """Nodes (n,2) not surrounded by filled cells, with velocity F'(t + dt/2) F^-1 x and acceleration F'' F^-1 x."""
+        """Walls of a step from t to t + dt: nodes that are not surrounded by filled cells, with the body's motion.
+
+        Parameters
+        ----------
+        nodes
+            Positions x of the nodes, (n,2).
+        t, dt
+            Start and length of the step.
+
+        Returns
+        -------
+        tuple
+            Whether a node is held, its velocity F'(t + dt/2) F^-1 x and its acceleration F'' F^-1 x, (n,2) each.
+        """
         w, dx = np.pi * self.C / self.L, float(nodes[1, 1] - nodes[0, 1])
         inverse = np.linalg.inv(np.eye(2) + self._numbers(np.sin(w * t), 1 - np.cos(w * t)))
         inside = np.ones(len(nodes), dtype=bool)
@@ -65,7 +93,7 @@ class Affine(Square):
         return np.repeat(~inside[:, None], 2, axis=1), velocity, acceleration
 
     def _matrix(self, odd: Any, even: Any) -> list[list[Any]]:
-        """F - I, or one of its rates, from the values that sin w t and 1 - cos w t, or their rates, have."""
+        """Matrix F - I, or one of its rates, from the values that sin w t and 1 - cos w t, or their rates, have."""
         return [[self.a * odd, self.b * even], [self.c * odd, self.d * even]]
 
     def _numbers(self, odd: float, even: float) -> Floats:

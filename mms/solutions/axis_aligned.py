@@ -3,8 +3,8 @@
     u_x = A sin(2 pi X / L) sin(C pi t / L + phase)
     u_y = A sin(2 pi Y / L) sin(C pi t / L + phase + pi)      on 0 <= X, Y <= L
 
-Boundary: u_n = 0 on all four sides and P is diagonal, so rollers are consistent. The
-duration 2 L / C is one period. A < L / (2 pi), or F is not invertible.
+Boundary: u_n = 0 on all four sides and P is diagonal, so rollers are consistent. The duration 2 L / C is one period.
+A < L / (2 pi), or F is not invertible.
 What it cannot see: F is diagonal, so shear, rotation and transposes are invisible; with phase = 0 the motion starts
 without acceleration, which hides a missing half-step start.
 """
@@ -21,7 +21,28 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class AxisAligned(Square):
-    """A: amplitude; L: side; C: speed that sets the period; phase: in radians."""
+    """Axis-aligned displacement.
+
+    Parameters
+    ----------
+    L
+        Side of the square, above zero.
+    C
+        Speed that sets the period, above zero.
+    A
+        Amplitude, a length, below L / (2 pi) in size.
+    phase
+        Phase at t = 0, radians.
+
+    Raises
+    ------
+    ValueError
+        For a parameter that is out of range.
+
+    References
+    ----------
+    Sadeghirad, Brannon & Burghardt 2011, doi:10.1002/nme.3110.
+    """
 
     A: float = 0.05
     phase: float = 0.0
@@ -33,11 +54,11 @@ class AxisAligned(Square):
 
     @property
     def amplitude(self) -> float:
-        """A over the side."""
+        """Amplitude over the side."""
         return abs(self.A) / self.L
 
     def displacement(self, X: Sequence["sp.Symbol"], t: "sp.Symbol") -> "sp.Matrix":
-        """u of the reference place X and the time t."""
+        """Displacement u (2,) of the reference position X and the time t."""
         import sympy as sp
 
         angle = self.exact(self.C) * sp.pi * t / self.exact(self.L) + self.exact(self.phase)

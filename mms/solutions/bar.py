@@ -1,6 +1,6 @@
-"""Standing wave in a bar: uniaxial strain of large amplitude, along one axis of a square.
+"""Standing wave in a bar: uniaxial strain of large amplitude, in the direction x or y of a square.
 
-    u = A sin(n pi X / L) sin(C pi t / L + phase)      along the axis, on 0 <= X <= L; none across it
+    u = A sin(n pi X / L) sin(C pi t / L + phase)      in that direction, on 0 <= X <= L; none in the other
 
 With F = 1 + du/dX, P = mu (F - 1/F) + lam ln F / F, and
 
@@ -8,10 +8,10 @@ With F = 1 + du/dX, P = mu (F - 1/F) + lam ln F / F, and
 
 Boundary: u = 0 at both ends and P is diagonal, so rollers on all four sides.
 The duration 2 L / C is one period. A < L / (n pi), or F is not invertible.
-Source: the uniaxial form of Wallstedt & Guilkey, J. Comput. Phys. 227 (2008) 9628. With A = 0.1 and n = 1, F lies
-between 0.69 and 1.31, and on 64 cells the middle moves by 6 of them to each side.
-What it cannot see: all that the other axis does; F is diagonal, so shear, rotation and transposes; with phase = 0 the
-motion starts without acceleration, which hides a missing half-step start.
+Source: the uniaxial form of Wallstedt & Guilkey 2008. With A = 0.1 and n = 1, F lies between 0.69 and 1.31, and on 64
+cells the middle moves by 6 of them to each side.
+What it cannot see: all that the other direction does; F is diagonal, so shear, rotation and transposes; with phase = 0
+the motion starts without acceleration, which hides a missing half-step start.
 """
 
 from collections.abc import Sequence
@@ -27,9 +27,31 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Bar(Square):
-    """A: amplitude; n: half waves, a whole number; axis: 0 for x, 1 for y; phase: in radians; L: side; C: speed.
+    """Standing wave in a bar.
 
-    Raises ValueError for an amplitude, a number of half waves or an axis that is not allowed.
+    Parameters
+    ----------
+    L
+        Side of the square, above zero.
+    C
+        Speed that sets the period, above zero.
+    A
+        Amplitude, a length, below L / (n pi) in size.
+    n
+        Half waves, a whole number from 1 on.
+    axis
+        Direction, 0 for x or 1 for y.
+    phase
+        Phase at t = 0, radians.
+
+    Raises
+    ------
+    ValueError
+        For a parameter that is out of range.
+
+    References
+    ----------
+    Wallstedt & Guilkey 2008, doi:10.1016/j.jcp.2008.07.019.
     """
 
     A: float = 0.1
@@ -48,11 +70,11 @@ class Bar(Square):
 
     @property
     def amplitude(self) -> float:
-        """A over the side."""
+        """Amplitude over the side."""
         return abs(self.A) / self.L
 
     def displacement(self, X: Sequence["sp.Symbol"], t: "sp.Symbol") -> "sp.Matrix":
-        """u of the reference place X and the time t."""
+        """Displacement u (2,) of the reference position X and the time t."""
         import sympy as sp
 
         axis, L = int(self.axis), self.exact(self.L)

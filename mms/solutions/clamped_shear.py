@@ -20,7 +20,22 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class ClampedShear(Square):
-    """G: amplitude; L: side; C: speed that sets the period."""
+    """Shear and stretch in a clamped square.
+
+    Parameters
+    ----------
+    L
+        Side of the square, above zero.
+    C
+        Speed that sets the period, above zero.
+    G
+        Amplitude, a length, below L / (2 pi) in size.
+
+    Raises
+    ------
+    ValueError
+        For a parameter that is out of range.
+    """
 
     G: float = 0.05
     boundary: ClassVar[str] = "fixed"
@@ -31,11 +46,11 @@ class ClampedShear(Square):
 
     @property
     def amplitude(self) -> float:
-        """G over the side."""
+        """Amplitude G over the side."""
         return abs(self.G) / self.L
 
     def displacement(self, X: Sequence["sp.Symbol"], t: "sp.Symbol") -> "sp.Matrix":
-        """u of the reference place X and the time t."""
+        """Displacement u (2,) of the reference position X and the time t."""
         import sympy as sp
 
         x, y = (sp.pi * coordinate / self.exact(self.L) for coordinate in X)

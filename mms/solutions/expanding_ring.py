@@ -7,8 +7,8 @@ so that u_R(outer) = A sin(.) and du_R/dR is a multiple of (R - inner) (R - oute
 Boundary: at both radii F_RR = 1, so P_RR = lam ln F_TT, with F_TT the hoop stretch: the edges are free of traction for
 nu = 0 alone, where lam = 0. With another nu the body force still balances momentum inside, but the missing traction
 drives a wave from the edges, and a study does not converge.
-Source: Wallstedt & Guilkey, J. Comput. Phys. 227 (2008) 9628: inner = 0.4, outer = 0.6, A = 0.1, E = 1e7, nu = 0,
-rho0 = 1000. The duration 2 (inner + outer) / C is one period, in and out (0.02 s there).
+Source: Wallstedt & Guilkey 2008: inner = 0.4, outer = 0.6, A = 0.1, E = 1e7, nu = 0, rho0 = 1000. The duration
+2 (inner + outer) / C is one period, in and out (0.02 s there).
 What it cannot see: nu = 0, so nothing of lam; F is symmetric, so a transpose and rotation are invisible, though shear
 in the axes of the grid is not; acceleration and stress vanish at t = 0, which hides a missing half-step start.
 """
@@ -26,10 +26,25 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class ExpandingRing(Annulus):
-    """A: amplitude at the outer edge; inner, outer: radii, outer < 3 inner; C: speed that sets the period.
+    """Expanding ring.
 
-    C is the wave speed sqrt(E / rho0) of the source's material, too. Raises ValueError for other radii, or an amplitude
-    with which the hoop stretch or the radial one vanishes somewhere.
+    Parameters
+    ----------
+    inner, outer
+        Radii of the body, 0 < inner < outer < 3 inner.
+    C
+        Speed that sets the period, above zero; the wave speed sqrt(E / rho0) of the source's material, too.
+    A
+        Amplitude at the outer edge, a length, with which no stretch vanishes.
+
+    Raises
+    ------
+    ValueError
+        For a parameter that is out of range.
+
+    References
+    ----------
+    Wallstedt & Guilkey 2008, doi:10.1016/j.jcp.2008.07.019.
     """
 
     inner: float = 0.4
@@ -49,22 +64,22 @@ class ExpandingRing(Annulus):
         Square.limit("A", self.A, 1 / max(abs(hoop), abs(radial)))
 
     def coefficients(self) -> tuple[float, float, float]:
-        """c1, c2 and c3."""
+        """Coefficients c1, c2 and c3."""
         q = self.outer * (self.outer - 3 * self.inner)
         return -6 * self.inner / q, 3 * (self.inner + self.outer) / (self.outer * q), -2 / (self.outer * q)
 
     @property
     def margin(self) -> float:
-        """The outer edge moves by A, and the inner one never passes it."""
+        """Room around the ring: the outer edge moves by A, and the inner one never passes it."""
         return super().margin + abs(self.A)
 
     @property
     def duration(self) -> float:
-        """One period."""
+        """Time of one period."""
         return 2 * (self.inner + self.outer) / self.C
 
     def displacement(self, X: Sequence["sp.Symbol"], t: "sp.Symbol") -> "sp.Matrix":
-        """u of the reference place X and the time t."""
+        """Displacement u (2,) of the reference position X and the time t."""
         import sympy as sp
 
         c1, c2, c3 = self.coefficients()

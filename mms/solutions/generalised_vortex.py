@@ -29,11 +29,27 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class GeneralisedVortex(Annulus):
-    """A: largest angle, radians; rate: half turns of the sine per unit of time; C: reference speed of dt alone.
+    """Generalised vortex.
 
-    The fastest are the shear wave along the longest stretch, 7.2 sqrt(mu / rho0) = 4.4, and the particles, 3.1: with
-    C = 5 and a Courant number of 0.4, both together pass 0.6 of a cell in a step. Larger A or rate need a larger C.
-    Raises ValueError for a rate that is not above zero, or |A| of 2 and more, where stretches exceed 14.
+    The fastest are the shear wave in the direction of the longest stretch, 7.2 sqrt(mu / rho0) = 4.4, and the
+    particles, 3.1: with C = 5 and a Courant number of 0.4, both together pass 0.6 of a cell in a step. Larger A or rate
+    need a larger C.
+
+    Parameters
+    ----------
+    inner, outer
+        Radii of the body, 0 < inner < outer.
+    C
+        Reference speed of dt alone, above zero.
+    A
+        Largest angle, radians, below 2 in size: there stretches exceed 14.
+    rate
+        Half turns of the sine per unit of time, above zero.
+
+    Raises
+    ------
+    ValueError
+        For a parameter that is out of range.
     """
 
     C: float = 5.0
@@ -50,11 +66,11 @@ class GeneralisedVortex(Annulus):
 
     @property
     def duration(self) -> float:
-        """Half a period of the sine: out and back."""
+        """Time of half a period of the sine: out and back."""
         return 1 / self.rate
 
     def displacement(self, X: Sequence["sp.Symbol"], t: "sp.Symbol") -> "sp.Matrix":
-        """u of the reference place X and the time t."""
+        """Displacement u (2,) of the reference position X and the time t."""
         import sympy as sp
 
         s = (2 * sp.sqrt(X[0] ** 2 + X[1] ** 2) - Square.exact(self.inner + self.outer)) / Square.exact(self.L)

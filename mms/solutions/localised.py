@@ -24,9 +24,23 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Localised(Square):
-    """A: diameter of the circle; n: power, a whole number from 2 on; L: side; C: speed that sets the period.
+    """Localised strain in a clamped square.
 
-    Raises ValueError for another n, or an A with which F can be singular; |grad g| is largest on the lines of symmetry.
+    Parameters
+    ----------
+    L
+        Side of the square, above zero.
+    C
+        Speed that sets the period, above zero.
+    A
+        Diameter of the circle, a length, with which F cannot be singular; |grad g| is largest on the lines of symmetry.
+    n
+        Power, a whole number from 2 on.
+
+    Raises
+    ------
+    ValueError
+        For a parameter that is out of range.
     """
 
     A: float = 0.04
@@ -41,11 +55,11 @@ class Localised(Square):
 
     @property
     def amplitude(self) -> float:
-        """A over the side."""
+        """Diameter A over the side."""
         return abs(self.A) / self.L
 
     def displacement(self, X: Sequence["sp.Symbol"], t: "sp.Symbol") -> "sp.Matrix":
-        """u of the reference place X and the time t."""
+        """Displacement u (2,) of the reference position X and the time t."""
         import sympy as sp
 
         angle = sp.pi * self.exact(self.C) * t / self.exact(self.L)

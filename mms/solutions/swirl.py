@@ -3,7 +3,7 @@
     u = h [(1 - cos w t) / 2 (Q(A) - I) + B sin w t I] (X - c),   w = pi C / L, c the centre, Q(A) rotation by A
     h = (1 - x^2)^2 (1 - y^2)^2,   x = 2 X / L - 1, y = 2 Y / L - 1,   on 0 <= X, Y <= L
 
-So the centre is turned along a chord from I to Q(A), which shrinks it by cos(A/2) half-way, and scaled beside.
+So the centre is turned on a chord from I to Q(A), which shrinks it by cos(A/2) half-way, and scaled beside.
 Boundary: h = 0 on all four sides, so u = 0 and fixed walls. The duration 2 L / C is one period.
 Source: the project's own. With A = 0.9 and B = 0.1 the body turns by up to 52 degrees, J lies between 0.66 and 1.32,
 the principal stretches between 0.59 and 1.60, and (F^T F)_xy reaches 0.88. F is full and not symmetric, and both
@@ -26,9 +26,23 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Swirl(Square):
-    """A: angle of the centre at half time, radians; B: amplitude of its swelling; L: side; C: speed (sets the period).
+    """Rotation and change of volume in a clamped square.
 
-    Raises ValueError for |A| of 1.5 or |B| of 0.3 and more.
+    Parameters
+    ----------
+    L
+        Side of the square, above zero.
+    C
+        Speed that sets the period, above zero.
+    A
+        Angle of the centre at half time, radians, below 1.5 in size.
+    B
+        Amplitude of its swelling, below 0.3 in size.
+
+    Raises
+    ------
+    ValueError
+        For a parameter that is out of range.
     """
 
     A: float = 0.9
@@ -46,7 +60,7 @@ class Swirl(Square):
         return max(abs(self.A), abs(self.B))
 
     def displacement(self, X: Sequence["sp.Symbol"], t: "sp.Symbol") -> "sp.Matrix":
-        """u of the reference place X and the time t."""
+        """Displacement u (2,) of the reference position X and the time t."""
         import sympy as sp
 
         L = self.exact(self.L)
@@ -60,10 +74,10 @@ class Swirl(Square):
 
 
 def even(x: Any) -> Any:
-    """(1 - x^2)^2 as a sum: its derivatives stay one factor each, which keeps the generated kernel small."""
+    """Sum for (1 - x^2)^2: its derivatives stay one factor each, which keeps the generated kernel small."""
     return 1 - 2 * x**2 + x**4
 
 
 def odd(x: Any) -> Any:
-    """x (1 - x^2)^2 as a sum."""
+    """Sum for x (1 - x^2)^2."""
     return x - 2 * x**3 + x**5

@@ -1,26 +1,26 @@
-"""What the auditor found of a solution, as stored with the runs on it: what they cannot see, and what they can."""
+"""Audit of a solution, as stored with the runs on it: what they cannot see, and what they can."""
 
 from mpm_verify.mms.blind_spots import ALWAYS, BlindSpot
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences import blind_spots as words
 
 
-def spots(record: Record, solution: str) -> tuple[BlindSpot, ...]:
-    """The findings of the auditor; where no run has stored any, those that hold for every solution."""
+def blind_spots(record: Record, solution: str) -> tuple[BlindSpot, ...]:
+    """Findings of the audit; where no run has stored any, those that hold for every solution."""
     found = (r.audit for run in record.study.runs if run.solution == solution and (r := record.result(run)) and r.audit)
     return next(found, ALWAYS)
 
 
 def blind(record: Record, solution: str) -> list[str]:
     """Sentences on what a study of the solution cannot see."""
-    return [words.sentence(spot) for spot in spots(record, solution) if spot.blind]
+    return [words.sentence(spot) for spot in blind_spots(record, solution) if spot.blind]
 
 
 def seen(record: Record, solution: str) -> list[str]:
     """Sentences on what it can, and how strong it is."""
-    return [words.sentence(spot) for spot in spots(record, solution) if not spot.blind]
+    return [words.sentence(spot) for spot in blind_spots(record, solution) if not spot.blind]
 
 
 def short(record: Record, solution: str) -> str:
-    """What cannot be seen, for a card: empty if there is nothing but what always holds, which is said once."""
-    return " ".join(words.unseen(spot) for spot in spots(record, solution) if spot.blind and spot not in ALWAYS)
+    """Text on what cannot be seen, for a card: empty if nothing but what always holds, which is said once."""
+    return " ".join(words.unseen(spot) for spot in blind_spots(record, solution) if spot.blind and spot not in ALWAYS)

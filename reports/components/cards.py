@@ -1,4 +1,4 @@
-"""The verdicts in words: one card a judged quantity, and what the whole study comes to."""
+"""Verdicts in words: one card a judged quantity, and what the whole study comes to."""
 
 from collections import Counter
 from dataclasses import dataclass
@@ -29,7 +29,7 @@ PLAIN = {
 
 @dataclass(frozen=True)
 class Card:
-    """What one card says. `outcome` picks word, shape and colour; `facts` are (label, text); `command` would decide."""
+    """Content of one card. `outcome` picks word, shape, colour; `facts` are (label, text); `command` would decide."""
 
     outcome: str
     title: str
@@ -44,12 +44,12 @@ class Card:
 
 
 def cards(record: Record) -> list[Card]:
-    """The cards of the judged quantities in the order of their declaration."""
+    """Cards of the judged quantities in the order of the plans."""
     return [_card(record, found) for found in record.findings if found.plan.judged]
 
 
 def summary(record: Record) -> str:
-    """`4 of 5 judged quantities PASS, 1 is INCONCLUSIVE.`"""
+    """Summary such as `4 of 5 judged quantities PASS, 1 INCONCLUSIVE.`"""
     counts = Counter(str(f.verdict.outcome) for f in record.findings if f.plan.judged)
     total = counts.total()
     if not total:
@@ -60,10 +60,10 @@ def summary(record: Record) -> str:
 
 
 def _card(record: Record, found: Finding) -> Card:
-    """One finding in words."""
-    d, v, e = found.plan, found.verdict, found.plan.expectation
+    """Card of one finding."""
+    plan, v, e = found.plan, found.verdict, found.plan.expectation
     diverges = e is not None and e.order is None
-    title = f"{record.label(d.run)}: {words.quantity(d.quantity)} in {d.norm}"
+    title = f"{record.label(plan.run)}: {words.quantity(plan.quantity)} in {plan.norm}"
     facts = (
         ("Observed order", words.order(v.observed)),
         ("Interval", words.interval(v.interval)),
@@ -72,7 +72,7 @@ def _card(record: Record, found: Finding) -> Card:
     )
     falls = diverges and e is not None and e.stall is not None
     headline = (STALLS if falls else DIVERGES if diverges else PLAIN)[v.outcome]
-    plain = divergence(record, found) if diverges and not falls and v.outcome is Outcome.PASS else ""
+    grows = divergence(record, found) if diverges and not falls and v.outcome is Outcome.PASS else ""
     return Card(
         str(v.outcome),
         title,
@@ -80,20 +80,20 @@ def _card(record: Record, found: Finding) -> Card:
         facts,
         words.sentence(verdicts.said(v.reason)),
         commands.command(record.study, found),
-        plain,
+        grows,
         short(found),
-        audited.short(record, d.run.solution),
-        tuple(audited.seen(record, d.run.solution)),
+        audited.short(record, plan.run.solution),
+        tuple(audited.seen(record, plan.run.solution)),
     )
 
 
 def divergence(record: Record, found: Finding) -> str:
-    """Divergence said plainly, with the growth of rms against the fall of printed where both were measured."""
-    d = found.plan
-    series = record.series_of(d)
-    name = "Classical MPM" if d.run.method == "mpm" else words.method(d.run.method)
+    """Sentence on divergence, with the growth of rms against the fall of printed where both were measured."""
+    plan = found.plan
+    series = record.series_of(plan)
+    name = "Classical MPM" if plan.run.method == "mpm" else words.method(plan.run.method)
     claim = f"{name} diverges here with refinement"
-    true, printed = record.errors(series, d.quantity, "rms"), record.errors(series, d.quantity, "printed")
+    true, printed = record.errors(series, plan.quantity, "rms"), record.errors(series, plan.quantity, "printed")
     if len(true) < 2 or len(printed) < 2:
         return f"{claim}: {len(true)} of {words.count(len(series.runs), 'cell size')} could be finished."
     (first, high), (last, low) = printed[0], printed[-1]

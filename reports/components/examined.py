@@ -1,4 +1,4 @@
-"""An Examination as a page: sections with words, figures and tables, and every check beside what it is held against."""
+"""Page of an Examination: sections with words, figures and tables, and every check beside what it is held against."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
@@ -19,7 +19,7 @@ WAYS = {"relative": "± {} of it", "absolute": "± {}", "at least": "or more", "
 
 @dataclass(frozen=True)
 class Section:
-    """A part of the page: paragraphs, figures with their captions, tables, animations."""
+    """Section of the page: paragraphs, figures with their captions, tables, animations."""
 
     key: str
     heading: str
@@ -57,7 +57,7 @@ def render(
             examination=examination,
             lead=said or lead(examination),
             outcome=outcome or str(examination.outcome),
-            missed=checks_table("Checks that did not pass", missed, group=True) if missed else None,
+            missed=checks_table("Found and expected", missed, group=True) if missed else None,
             sections=sections(examination, adder(folder / "figures", kinds=kinds)),
             parameters=Table(
                 "Parameters", ("parameter", "value"), tuple(parameters(examination).items()), texts=("value",)
@@ -73,14 +73,14 @@ def render(
 
 
 def checks_table(caption: str, checks: Sequence[Check], group: bool = False) -> Table:
-    """Found beside expected, how close it has to be, and where the expectation comes from."""
+    """Table of checks: found beside expected, how close it has to be, and where the expectation comes from."""
     head = (*(("part",) if group else ()), "check", "outcome", "found", "expected", "allowed", "miss", "source")
     rows = tuple((*((check.group,) if group else ()), *row(check)) for check in checks)
     return Table(caption, head, rows, texts=("check", "outcome", "allowed", "source"))
 
 
 def row(check: Check) -> tuple[str, ...]:
-    """A check as text; a bound has no distance from it worth showing."""
+    """Cells of a check as text; a bound has no distance from it worth showing."""
     bound = check.way.startswith("at")
     allowed = WAYS[check.way].format(f"{check.within:.3g}")
     miss = "" if bound else f"{check.miss:.2g}"
@@ -96,12 +96,12 @@ def row(check: Check) -> tuple[str, ...]:
 
 
 def digits(value: float) -> str:
-    """Eight digits, so that a reference value can be recognised; powers of ten where it is small or large."""
+    """Number with eight digits, so that a reference value can be recognised; powers of ten where it is tiny or huge."""
     return f"{value:.8g}".replace("-", "\N{MINUS SIGN}", 1) if value < 0 else f"{value:.8g}"
 
 
 def _write_csv(path: Path, checks: Sequence[Check]) -> None:
-    """All checks with full digits."""
+    """Write all checks with full digits."""
     rows = [
         {**asdict(check), "miss": check.miss, "outcome": str(check.outcome)}
         | {"failure": str(check.failure.kind) if check.failure else None}

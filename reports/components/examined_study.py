@@ -1,4 +1,4 @@
-"""The page of a study that consists of Examinations: one after the other, with their names where there are several."""
+"""Page of a study that consists of Examinations: one after the other, with their names where there are several."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -38,7 +38,7 @@ def whole(record: Record, found: Mapping[str, Examination]) -> Examination:
 
 
 def every(found: Mapping[str, Examination], sections: Sections, add: Add) -> Sequence[Section]:
-    """The sections of each, with its name in front where there are several."""
+    """Sections of each, with its name in front where there are several."""
     if len(found) == 1:
         return sections(next(iter(found.values())), add)
     parts = []
@@ -49,5 +49,5 @@ def every(found: Mapping[str, Examination], sections: Sections, add: Add) -> Seq
 
 
 def numbered(add: Add, number: int) -> Add:
-    """The same, with a number behind the names of figures."""
+    """Adder of figures with a number behind their names."""
     return lambda key, figure, alt: add(f"{key}_{number}", figure, alt)

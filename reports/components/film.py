@@ -1,7 +1,7 @@
-"""A run as an animation inside the page: places of its particles, packed as whole numbers, drawn on a canvas.
+"""A run as an animation inside the page: positions of its particles, packed as whole numbers, drawn on a canvas.
 
-Particles are coloured in bands by the height at which they began, as the sand of the experiment was layered. Places are
-kept to 1/65534 of the picture, one of many is drawn where there are more than the page should carry.
+Particles are coloured in bands by the height at which they began, as the sand of the experiment was layered. Positions
+are kept to 1/65534 of the picture, one of many is drawn where there are more than the page should carry.
 """
 
 import base64
@@ -20,7 +20,7 @@ EACH = 4_000
 
 @dataclass(frozen=True)
 class Film:
-    """`data`: base64 of unsigned 16-bit numbers, little-endian: x and y of each particle, frame after frame;
+    """Film. `data`: base64 of unsigned 16-bit numbers, little-endian: x and y of each particle, frame after frame;
     65535 is outside the picture.
 
     `bands`: one character a particle, its colour; `wide`, `high`: what the whole range is, in m; `times` in s.
@@ -36,7 +36,7 @@ class Film:
 
 
 def film(run: ColumnRun, arrays: Mapping[str, Any], label: str, wide: float, most: int = EACH) -> Film:
-    """The film of a stored run, `wide` metres of it."""
+    """Film of a stored run, `wide` metres of it."""
     frames = away(run, arrays["frame_x"])
     frames = frames[:, :: -(-frames.shape[1] // most)]
     high = 1.02 * run.height

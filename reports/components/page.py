@@ -1,4 +1,4 @@
-"""What every page is made of: the templates, and figures that stand inside it as SVG data."""
+"""Parts that every page is made of: templates, and figures that stand inside it as SVG data."""
 
 import base64
 import re
@@ -17,7 +17,7 @@ Add = Callable[[str, Figure, str], "Image"]
 
 @dataclass(frozen=True)
 class Image:
-    """A figure inside the page: its SVG as data, and what it shows in words."""
+    """Figure inside the page: its SVG as data, and what it shows in words."""
 
     name: str
     data: str
@@ -27,14 +27,14 @@ class Image:
 
 
 def template(name: str) -> Template:
-    """A template of this package; a name that is not defined is an error."""
+    """Template of this package; a name that is not defined is an error."""
     environment = Environment(loader=FileSystemLoader(TEMPLATES), undefined=StrictUndefined, autoescape=True)
     environment.trim_blocks = environment.lstrip_blocks = True
     return environment.get_template(name)
 
 
 def adder(folder: Path, end: str = "", kinds: Sequence[str] = ("svg", "pdf", "png")) -> Add:
-    """A function that saves a figure under a name and gives it as an Image; its halves are saved as SVG alone."""
+    """Function that saves a figure under a name and gives it as an Image; its halves are saved as SVG alone."""
 
     def add(name: str, figure: Figure, alt: str) -> Image:
         name = re.sub(r"[^A-Za-z0-9_.=-]+", "_", name)

@@ -1,4 +1,4 @@
-"""The tables of errors and orders as the page shows them: text cells; full digits are in the CSV files."""
+"""Tables of errors and orders as the page shows them: text cells; full digits are in the CSV files."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from mpm_verify.reports import words
 from mpm_verify.reports.figures.local_orders import orders
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences import verdicts
-from mpm_verify.reports.tables import study as tables
+from mpm_verify.reports.tables import mms as tables
 
 NAMES = {"u": "displacement u", "v": "velocity v", "F": "deformation gradient F", "sigma": "Cauchy stress"}
 Row = tuple[str, ...]
@@ -20,7 +20,7 @@ Row = tuple[str, ...]
 
 @dataclass(frozen=True)
 class Table:
-    """A table as text. `heads` row-heading columns come first; the others hold numbers, but those named in `texts`."""
+    """Table as text. `heads` row-heading columns come first; the others hold numbers, but those named in `texts`."""
 
     caption: str
     head: Row
@@ -44,7 +44,7 @@ def judged_orders(record: Record) -> Table:
     """Local orders of what the study judges, with the fitted order."""
     return _orders(
         record,
-        "Judged: order between neighbouring cell sizes",
+        "Judged: order between consecutive cell sizes",
         [(s, *k) for s in record.series for k in _keys(record, s, "judged")],
     )
 
@@ -52,28 +52,28 @@ def judged_orders(record: Record) -> Table:
 def shown_displacements(record: Record) -> Table:
     """Local orders of u in rms where they are not judged."""
     keys = [(s, "u", "rms") for s in record.series if ("u", "rms") in _keys(record, s, "shown")]
-    return _orders(record, "Shown only: order of u between neighbouring cell sizes", keys)
+    return _orders(record, "Shown only: order of u between consecutive cell sizes", keys)
 
 
 def shown_orders(record: Record) -> Table:
     """Local orders of what else is only shown: the other quantities in rms, and u as printed."""
     wanted = {(q, "rms") for q in QUANTITIES if q != "u"} | {("u", "printed")}
-    keys = [(s, *k) for k in sorted(wanted, key=_place) for s in record.series if k in _keys(record, s, "shown")]
-    return _orders(record, "Shown only: order between neighbouring cell sizes", keys)
+    keys = [(s, *k) for k in sorted(wanted, key=_rank) for s in record.series if k in _keys(record, s, "shown")]
+    return _orders(record, "Shown only: order between consecutive cell sizes", keys)
 
 
 def contamination(record: Record) -> Table:
-    """Shares of the finest error, judged quantities first."""
+    """Fractions of the finest error, judged quantities first."""
     found = sorted((f for f in record.findings if f.verdict.contamination), key=lambda f: not f.plan.judged)
     rows = []
     for f in found:
-        shares, d = f.verdict.contamination, f.plan
-        if shares is not None:
-            name = f"{words.quantity(d.quantity)}, {d.norm}"
-            share = (words.percent(s) for s in (shares.lower, shares.floor, shares.most))
-            rows.append((record.label(d.run), name, "judged" if d.judged else "shown only", *share))
+        mixed, plan = f.verdict.contamination, f.plan
+        if mixed is not None:
+            name = f"{words.quantity(plan.quantity)}, {plan.norm}"
+            fractions = (words.percent(part) for part in (mixed.lower, mixed.floor, mixed.most))
+            rows.append((record.label(plan.run), name, "judged" if plan.judged else "shown only", *fractions))
     head = ("series", "quantity", "role", "lower order", "floor", "at most")
-    return Table("Shares of the finest error that are not of the expected order", head, tuple(rows), heads=3)
+    return Table("Fractions of the finest error that are not of the expected order", head, tuple(rows), heads=3)
 
 
 def shown_verdicts(record: Record) -> Table:
@@ -86,13 +86,13 @@ def shown_verdicts(record: Record) -> Table:
 
 
 def _keys(record: Record, series: Series, role: str) -> list[tuple[str, str]]:
-    """(quantity, norm) of that role, in the order of the contract."""
+    """Pairs (quantity, norm) of that role, in the order of the contract."""
     known = tables.roles(record)
     every = [(q, n) for q in QUANTITIES for n in NORMS]
     return [k for k in every if known.get((series.head, *k), "shown") == role]
 
 
-def _place(key: tuple[str, str]) -> tuple[int, int]:
+def _rank(key: tuple[str, str]) -> tuple[int, int]:
     return NORMS.index(key[1]), QUANTITIES.index(key[0])
 
 
@@ -101,7 +101,7 @@ def _cells(record: Record) -> list[int]:
 
 
 def _errors(record: Record, caption: str, keys: Iterable[tuple[Series, str, str]]) -> Table:
-    """A column a cell size."""
+    """Table of errors, a column for each cell size."""
     cells, rows = _cells(record), []
     for s, quantity, norm in keys:
         means = dict(record.errors(s, quantity, norm))
@@ -113,12 +113,12 @@ def _errors(record: Record, caption: str, keys: Iterable[tuple[Series, str, str]
 
 
 def _without(record: Record, series: Series, run: Run) -> str:
-    """Why a level has no error."""
+    """Reason why a level has no error."""
     return "failed" if run in record.failed(series) else "not run"
 
 
 def _orders(record: Record, caption: str, keys: Iterable[tuple[Series, str, str]]) -> Table:
-    """A column a pair of cell sizes, the crossings per particle of the finer one beside it, then the fitted order."""
+    """Table of orders: a column for each pair of cell sizes, crossings per particle beside it, then the fit."""
     cells, rows = _cells(record), []
     passed = tables.crossings(record)
     fitted = {tables.key(f.plan): words.order(f.verdict.observed) for f in record.findings}
@@ -133,16 +133,16 @@ def _orders(record: Record, caption: str, keys: Iterable[tuple[Series, str, str]
 
 
 def _shown(record: Record, found: Finding) -> Row:
-    d, v = found.plan, found.verdict
-    says = words.DASH if d.expectation is None else str(v.outcome)
-    if d.expectation and d.expectation.order is None and v.outcome is Outcome.PASS:
+    plan, v = found.plan, found.verdict
+    says = words.DASH if plan.expectation is None else str(v.outcome)
+    if plan.expectation and plan.expectation.order is None and v.outcome is Outcome.PASS:
         says += " (diverges, as expected)"
-    name = f"{words.quantity(d.quantity)}, {d.norm}"
+    name = f"{words.quantity(plan.quantity)}, {plan.norm}"
     return (
-        record.label(d.run),
+        record.label(plan.run),
         name,
         words.order(v.observed),
         words.interval(v.interval),
-        verdicts.registered(d.expectation),
+        verdicts.registered(plan.expectation),
         says,
     )

@@ -1,4 +1,4 @@
-"""The tables of the axes beside the cells: time step, particles per cell, position of the particles in their cells."""
+"""Tables of the axes beside the cells: time step, particles per cell, position of the particles in their cells."""
 
 from itertools import pairwise
 
@@ -14,7 +14,7 @@ ARROW = "→"
 
 
 def time_step(record: Record) -> Table:
-    """Error of u in rms at each time step, the order between them, and the share of the first time step."""
+    """Error of u in rms at each time step, the order between them, and the fraction of the first time step."""
     axes = time_axes(record.study.runs, record.results)
     courants = sorted({courant for a in axes for courant in a.courants}, reverse=True)
     pairs, rows = list(pairwise(courants)), []
@@ -23,11 +23,11 @@ def time_step(record: Record) -> Table:
         orders = dict(zip(pairwise(a.courants), a.orders, strict=True))
         cells = (words.sci(errors.get(courant)) for courant in courants)
         steps = (words.order(orders.get(pair)) for pair in pairs)
-        rows.append((record.label(a.run), words.cell_size(a.run.cells), *cells, *steps, words.percent(a.shares[0])))
+        rows.append((record.label(a.run), words.cell_size(a.run.cells), *cells, *steps, words.percent(a.fractions[0])))
     head = [f"C = {courant:g}" for courant in courants] + [f"order {a:g} {ARROW} {b:g}" for a, b in pairs]
     return Table(
         "Error of u in rms against the Courant number C",
-        ("series", "cell size", *head, "share of the time step"),
+        ("series", "cell size", *head, "fraction of the time step"),
         tuple(rows),
         heads=2,
     )
@@ -57,17 +57,17 @@ def scatter(record: Record) -> Table:
             ratio = f"{high / low:.2f}" if low else words.DASH
             ends = (words.sci(e) for e in (errors[0], low, mid, high))
             rows.append((record.label(a.run), words.cell_size(cells), str(len(errors)), *ends, ratio))
-    head = ("series", "cell size", "runs", "usual place", "smallest", "median", "largest", "largest / smallest")
+    head = ("series", "cell size", "runs", "usual position", "smallest", "median", "largest", "largest / smallest")
     return Table("Error of u in rms over the positions of the particles", head, tuple(rows), heads=2)
 
 
 def intervals(record: Record) -> Table:
-    """The fitted order and its interval, from the usual places alone and from all replicates."""
+    """Fitted order and its interval, from the usual positions alone and from all replicates."""
     rows = [
         (record.label(a.run), *_interval(a.alone), *_interval(a.together))
         for a in position_axes(record.study.runs, record.results)
     ]
-    head = ("series", "order, usual place", "95 % interval", "order, all places", "95 % interval of the scatter")
+    head = ("series", "order, usual position", "95 % interval", "order, all positions", "95 % interval of the scatter")
     return Table("Order of u in rms with and without the other positions", head, tuple(rows))
 
 

@@ -1,4 +1,4 @@
-"""What graded layouts save: a row a run, and a row a layout over its runs."""
+"""Savings of graded layouts: a row for each run, and for each layout over its runs."""
 
 from statistics import median
 
@@ -29,19 +29,19 @@ SIGNS = {"": "", "at_least": "> ", "at_most": "< "}
 
 
 def shown(record: Record) -> Table:
-    """The same for the page."""
+    """Table of all runs for the page."""
     caption = "What each layout costs and saves, in u"
     return Table(caption, COLUMNS, tuple(table(record)), heads=3)
 
 
 def table(record: Record, quantity: str = "u") -> list[tuple[str, ...]]:
-    """A row a run, solution by solution; see MEANING."""
+    """Rows, one for each run, solution by solution; see MEANING."""
     saved = {saving.result.run: saving for saving in savings(record.study.runs, record.results, quantity)}
     return [row(record, run, saved.get(run), quantity) for run in record.study.runs]
 
 
 def row(record: Record, run: Run, saving: Saving | None, quantity: str) -> tuple[str, ...]:
-    """One run; a failed one by its reason."""
+    """Row of one run; a failed one says so."""
     result, error = record.result(run), record.error(run, quantity, "rms")
     head = (label(run.solution), words.method(run.method), kind(run), str(run.ppc), str(run.cells))
     if result is None:
@@ -54,22 +54,22 @@ def row(record: Record, run: Run, saving: Saving | None, quantity: str) -> tuple
 
 
 def factors(saving: Saving) -> tuple[str, str, str, str]:
-    """The last four columns."""
+    """Cells of the last four columns."""
     return two(saving.particles), two(saving.errors), bounded(saving.same_grid), two(saving.any_grid)
 
 
 def two(factor: float | None) -> str:
-    """Two decimals; a dash for nothing."""
+    """Factor with two decimals; a dash for nothing."""
     return words.DASH if factor is None else f"{factor:.2f}"
 
 
 def bounded(factor: Bounded | None) -> str:
-    """1.80, or > 1.80 where no more is known."""
+    """Factor such as 1.80, or > 1.80 where no more is known."""
     return words.DASH if factor is None else SIGNS[factor.bound] + two(factor.value)
 
 
 def overview(record: Record) -> Table:
-    """What each layout does, over its runs: a row a solution, method, layout and quantity."""
+    """Table of what each layout saves over its runs: a row for each solution, method, layout and quantity."""
     rows = []
     for quantity in ("u", "sigma"):
         kinds: dict[tuple[str, str, str], list[Saving]] = {}
@@ -83,14 +83,14 @@ def overview(record: Record) -> Table:
 def summed(solution: str, method: str, layout: str, quantity: str, found: list[Saving]) -> tuple[str, ...]:
     """One row of the overview."""
     head = (label(solution), words.method(method), layout, words.quantity(quantity))
-    share = [s.particles for s in found if s.particles is not None]
+    count = [s.particles for s in found if s.particles is not None]
     ratio = [s.errors for s in found if s.errors is not None]
     if not ratio:
         return (*head, *[words.DASH] * 4)
     known = [s.same_grid for s in found if s.same_grid is not None]
     more = sum(f.value > CLEAR and f.bound != "at_most" for f in known)
     less = sum(f.value < 1 / CLEAR and f.bound != "at_least" for f in known)
-    return (*head, spread(share), spread(ratio), f"{more} of {len(found)}", f"{less} of {len(found)}")
+    return (*head, spread(count), spread(ratio), f"{more} of {len(found)}", f"{less} of {len(found)}")
 
 
 def spread(factors: list[float]) -> str:

@@ -1,9 +1,9 @@
-"""The tables of the runs: how each ended, with what parameters, on what machine."""
+"""Tables of the runs: how each ended, with what parameters, on what machine."""
 
 from collections.abc import Sequence
 from dataclasses import asdict, replace
 
-from mpm_verify.cases.harness.axes import crossed
+from mpm_verify.cases.harness.axes import cell_crossings
 from mpm_verify.cases.mms.run import Run
 from mpm_verify.reports import words
 from mpm_verify.reports.components.show import Row, Table
@@ -13,7 +13,7 @@ from mpm_verify.solver.plugins import is_file, label, split
 
 
 def runs(record: Record) -> Table:
-    """Every run: how it ended."""
+    """Table of every run, and how it ended."""
     head = (
         *("method", "cells", "per cell", "status", "Courant", "shift", "steps", "particles", "crossings", "gap"),
         *("wall time", "memory", "reason"),
@@ -24,7 +24,7 @@ def runs(record: Record) -> Table:
 
 
 def parameters(record: Record) -> Table:
-    """Every parameter of every run."""
+    """Table of every parameter of every run."""
     names = tuple(asdict(record.study.runs[0])) if record.study.runs else ()
     rows = []
     for run in record.study.runs:
@@ -42,7 +42,7 @@ def parameters(record: Record) -> Table:
 
 
 def problem(record: Record) -> Table:
-    """Every parameter of solution and material, the defaults too, with the number of runs that it holds for.
+    """Table of every parameter of solution and material, the defaults too, with the runs that it holds for.
 
     A user's file stands here by its whole path, once.
     """
@@ -53,12 +53,12 @@ def problem(record: Record) -> Table:
 
 
 def environment(record: Record) -> Table:
-    """Versions, commit, processor: one row a value, with the number of runs that it holds for."""
+    """Table of versions, commit and processor, with the number of runs that each holds for."""
     return _shared(record, "environment", "Where it ran")
 
 
 def _shared(record: Record, field: str, caption: str) -> Table:
-    """A dictionary that every Result has: one row a value."""
+    """Table of a dictionary that every Result has: one row for each value."""
     found = [r for run in record.study.runs if (r := record.result(run))]
     rows = []
     for name in sorted({key for result in found for key in getattr(result, field)}):
@@ -75,19 +75,19 @@ def _shared(record: Record, field: str, caption: str) -> Table:
 
 
 def _with_solution(record: Record, row: Sequence[str], run: Run | None = None) -> Row:
-    """A column for the solution where there is more than one."""
+    """Row with a column for the solution where there is more than one."""
     if len(record.solutions) < 2:
         return tuple(row)
     return (*row, label(run.solution) if run else "solution")
 
 
 def _run(record: Record, run: Run) -> Row:
-    """How one run ended."""
+    """Row of one run, and how it ended."""
     head, result = (words.method(run.method), str(run.cells), str(run.ppc)), record.result(run)
     point = (f"{run.courant:g}", words.shift(run))
     if result is None:
         return _with_solution(record, (*head, "not run", *point, *(words.DASH,) * 6, "to be done"), run)
-    numbers = (f"{result.steps}", f"{result.particles}", words.few(crossed(result)), words.few(result.gap))
+    numbers = (f"{result.steps}", f"{result.particles}", words.few(cell_crossings(result)), words.few(result.gap))
     costs = (f"{result.wall_s:.2f} s", f"{result.peak_memory_mb:.0f} MB")
     reason = failures.failure(result.failure) if result.failure else ""
     return _with_solution(record, (*head, result.status, *point, *numbers, *costs, reason), run)

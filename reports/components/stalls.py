@@ -1,4 +1,4 @@
-"""Where orders fall, and why, in words: one entry a series whose displacement stalls."""
+"""Stalls in words, where orders fall and why: one entry for each series whose displacement stalls."""
 
 from dataclasses import dataclass
 
@@ -11,7 +11,7 @@ from mpm_verify.reports.sentences import stalls as sentences
 
 @dataclass(frozen=True)
 class Told:
-    """What is said of one stall: its series, where it is, what is named as its cause, and the numbers in sentences."""
+    """Text of one stall: its series, where it is, what is named as its cause, and the numbers in sentences."""
 
     title: str
     where: str
@@ -20,7 +20,7 @@ class Told:
 
 
 def stalls(record: Record) -> list[Told]:
-    """The stalls of the study in the order of its declarations."""
+    """Stalls of the study in the order of its plans."""
     return [_told(record, f, f.stall) for f in record.findings if f.stall]
 
 

@@ -1,4 +1,4 @@
-"""What the JSON document of a column has beside that of any study: the paper's sentences, and what refines."""
+"""Additions of a column to its JSON document: the paper's sentences, and what refines."""
 
 from dataclasses import asdict
 from typing import Any
@@ -9,7 +9,7 @@ from mpm_verify.reports.sentences.remarks import lead
 
 
 def more(record: Record) -> dict[str, Any]:
-    """`lead`, `findings`, `paper` and `refinement`."""
+    """Additions by key: `lead`, `findings`, `paper` and `refinement`."""
     found = record.analysis.more
     return {
         "lead": lead(found.examination),

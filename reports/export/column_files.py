@@ -1,4 +1,4 @@
-"""What a study of the column leaves as files beside its page: numbers and curves as CSV, snapshots for ParaView."""
+"""Files of a study of the column beside its page: numbers and curves as CSV, snapshots for ParaView."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -20,20 +20,20 @@ MEASURED = {  # measured numbers that have the name of a parameter: their names 
 }  # fmt: skip
 
 
-def tables(collapse: ColumnAnalysis, store: Store, folder: Path) -> None:
-    """runs.csv: parameters and numbers of each run; curves.csv: each curve of each run, front to residual."""
+def tables(analysis: ColumnAnalysis, store: Store, folder: Path) -> None:
+    """Write runs.csv: parameters and numbers of each run; curves.csv: each curve of each run, front to residual."""
     rows, curves = [], []
-    for run in collapse.study.runs:
-        result = collapse.results.get(run.digest)
+    for run in analysis.study.runs:
+        result = analysis.results.get(run.digest)
         if result:
-            parameters = flat({name: getattr(run, name) for name in collapse.study.axes})
+            parameters = flat({name: getattr(run, name) for name in analysis.study.axes})
             failure = failures.cause(result.failure) if result.failure else ""
             head = {"digest": run.digest, "status": result.status, "failure": failure}
             rows.append(joined(head, parameters, measured(result.values)))
             columns = {name: values for name, values in read_curves(store, result).items() if values.ndim == 1}
             if not columns:
                 continue
-            named = {axis: words.value(axis, getattr(run, axis)) for axis in collapse.study.axes}
+            named = {axis: words.value(axis, getattr(run, axis)) for axis in analysis.study.axes}
             curves.append(pd.DataFrame(joined({"digest": run.digest}, named, measured(columns))))
     pd.DataFrame(rows).to_csv(folder / "runs.csv", index=False)
     if curves:
@@ -41,15 +41,15 @@ def tables(collapse: ColumnAnalysis, store: Store, folder: Path) -> None:
 
 
 def measured(values: Mapping[str, Any]) -> dict[str, Any]:
-    """What was measured, by names that no parameter has."""
+    """Measured numbers by names that no parameter has."""
     return {MEASURED.get(name, name): value for name, value in values.items()}
 
 
-def files(collapse: ColumnAnalysis, store: Store, folder: Path) -> None:
-    """Snapshots of each run, see reports/export/vtk.py."""
+def files(analysis: ColumnAnalysis, store: Store, folder: Path) -> None:
+    """Write the snapshots of each run, see reports/export/vtk.py."""
     folder.mkdir(exist_ok=True)
-    for run in collapse.study.runs:
-        result = collapse.results.get(run.digest)
+    for run in analysis.study.runs:
+        result = analysis.results.get(run.digest)
         if result and (arrays := read_arrays(store, result)):
             named = {
                 key[9:]: values for key, values in arrays.items() if key.startswith("snapshot_") and key != "snapshot_t"

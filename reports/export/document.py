@@ -1,4 +1,4 @@
-"""The JSON document of --json, of every case. CI jobs read it: its shape changes only with VERSION.
+"""JSON document of --json, of every case. CI jobs read it: its shape changes only with VERSION.
 
 Each row of `runs` has the fields of the case's Run beside those of RunRow, each row of `verdicts` and `shown` those
 that name its refinement. `schema` derives the JSON schema from the records below and from the case's Run.
@@ -32,7 +32,7 @@ Row = dict[str, Any]
 
 @dataclass(frozen=True)
 class FailureRow:
-    """Why a run could not go on; `particle` is -1 where none has to do with it."""
+    """Failure of a run; `particle` is -1 where none has to do with it."""
 
     kind: str
     step: int
@@ -43,7 +43,7 @@ class FailureRow:
 
 @dataclass(frozen=True)
 class EndedRow:
-    """A level without an error."""
+    """Level without an error."""
 
     h: float
     replicate: int
@@ -52,7 +52,7 @@ class EndedRow:
 
 @dataclass(frozen=True)
 class CauseRow:
-    """What was weighed as the cause of a stall; `weight` is the fraction of the excess that it explains."""
+    """Cause of a stall that was weighed; `weight` is the fraction of the excess that it explains."""
 
     code: str
     name: str
@@ -65,7 +65,7 @@ class CauseRow:
 
 @dataclass(frozen=True)
 class StallRow:
-    """Where an order falls; `order` on the finest pair of levels, `before` on the coarser ones."""
+    """Stall, where an order falls; `order` on the finest pair of levels, `before` on the coarser ones."""
 
     coarser: int | None
     cells: int
@@ -79,7 +79,7 @@ class StallRow:
 
 @dataclass(frozen=True)
 class ShownRow:
-    """What is measured of a quantity; lists run over the levels, coarse to fine, null where there is none."""
+    """Measurements of a quantity; lists run over the levels, coarse to fine, null where there is none."""
 
     quantity: str
     norm: str
@@ -92,7 +92,7 @@ class ShownRow:
 
 @dataclass(frozen=True)
 class VerdictRow(ShownRow):
-    """A judged quantity; `expected` is an order, or a word such as diverges."""
+    """Verdict on a judged quantity; `expected` is an order, or a word such as diverges."""
 
     expected: float | str | None
     verdict: str
@@ -105,7 +105,7 @@ class VerdictRow(ShownRow):
 
 @dataclass(frozen=True)
 class CheckRow:
-    """A number beside what it is held against; null for a number that is not finite."""
+    """Check, a number beside what it is held against; null for a number that is not finite."""
 
     group: str
     name: str
@@ -119,7 +119,7 @@ class CheckRow:
 
 @dataclass(frozen=True)
 class RunRow:
-    """How a run ended; `errors` by quantity and norm, null of a failed run."""
+    """Run, and how it ended; `errors` by quantity and norm, null of a failed run."""
 
     digest: str
     status: str
@@ -136,7 +136,7 @@ class RunRow:
 
 @dataclass(frozen=True)
 class Document:
-    """A study: `axes` are what is judged along the axes beside the cells; `more` is what the case adds."""
+    """Document of a study: `axes` are what is judged along the axes beside the cells; `more` is what the case adds."""
 
     version: int
     case: str
@@ -154,7 +154,7 @@ class Document:
 
 
 def document(record: Record, page: Path | None, more: Row) -> str:
-    """The document as text; `page` is None where none is drawn."""
+    """Text of the document; `page` is None where none is drawn."""
     study, found = record.study, record.analysis
     content = {
         "version": VERSION,
@@ -175,7 +175,7 @@ def document(record: Record, page: Path | None, more: Row) -> str:
 
 
 def verdict(record: Record, finding: Finding) -> Row:
-    """A judged quantity; `code`, `numbers`, `failed` and `wanted` are what `reason` says in words."""
+    """Row of a judged quantity; `code`, `numbers`, `failed` and `wanted` are what `reason` says in words."""
     study, expectation, r = record.study, finding.plan.expectation, finding.verdict.reason
     order = expectation.order if expectation else None
     row = {
@@ -191,7 +191,7 @@ def verdict(record: Record, finding: Finding) -> Row:
 
 
 def shown(record: Record, finding: Finding) -> Row:
-    """What is measured of a quantity, judged or not."""
+    """Row of the measurements of a quantity, judged or not."""
     plan, v = finding.plan, finding.verdict
     row = ShownRow(
         plan.quantity, plan.norm, v.observed, None if v.interval is None else list(v.interval), list(v.local_orders),
@@ -201,7 +201,7 @@ def shown(record: Record, finding: Finding) -> Row:
 
 
 def stall(found: Stall) -> StallRow:
-    """Where an order falls, and the causes that were weighed, the weightiest first."""
+    """Row of a stall, and the causes that were weighed, the weightiest first."""
     causes = [cause(each) for each in found.causes]
     return StallRow(
         found.coarser, found.cells, stalls.where(found), found.order, list(found.before),
@@ -210,7 +210,7 @@ def stall(found: Stall) -> StallRow:
 
 
 def cause(found: Cause) -> CauseRow:
-    """A cause of a stall; `measured` says in words what its numbers are."""
+    """Row of a cause of a stall; `measured` says in words what its numbers are."""
     return CauseRow(
         str(found.code), stalls.name(found), str(found.finding), found.weight, finite(found.numbers),
         found.peer.method if found.peer else None, stalls.measured(found),
@@ -218,18 +218,18 @@ def cause(found: Cause) -> CauseRow:
 
 
 def ended(end: Ended) -> EndedRow:
-    """A level without an error."""
+    """Row of a level without an error."""
     return EndedRow(end.h, end.replicate, failure(end.failure))
 
 
 def failure(found: Failure) -> FailureRow:
-    """What ended a run, as codes and numbers."""
+    """Row of what ended a run, as codes and numbers."""
     return FailureRow(str(found.kind), found.step, found.particle, list(found.cell) if found.cell else None,
                       finite(found.numbers))  # fmt: skip
 
 
 def axes(record: Record) -> dict[str, list[Row]]:
-    """What is judged along the axes beside the cells; an axis with one value is empty."""
+    """Rows of the axes beside the cells, of the first judged quantity; an axis with one value is empty."""
     runs, results = record.study.runs, record.results
     if not record.study.plans:
         return {"time": [], "particles": [], "position": []}
@@ -237,7 +237,7 @@ def axes(record: Record) -> dict[str, list[Row]]:
     of = plan.quantity, plan.norm
     times = [
         joined(record.columns(a.run), {"cells": a.run.cells, "courants": list(a.courants), "errors": list(a.errors)})
-        | {"orders": list(a.orders), "shares": list(a.shares)}
+        | {"orders": list(a.orders), "fractions": list(a.fractions)}
         for a in time_axes(runs, results, *of)
     ]
     particles = [
@@ -253,7 +253,7 @@ def axes(record: Record) -> dict[str, list[Row]]:
 
 
 def check_row(check: Check) -> CheckRow:
-    """A check with its outcome."""
+    """Row of a check with its outcome."""
     found, expected, within = (x if isfinite(x) else None for x in (check.found, check.expected, check.within))
     return CheckRow(
         check.group, check.name, found, expected, check.way, within, check.source, str(check.outcome)
@@ -261,7 +261,7 @@ def check_row(check: Check) -> CheckRow:
 
 
 def run_row(result: ResultRecord[Any]) -> Row:
-    """A run with all its parameters."""
+    """Row of a run with all its parameters."""
     row = RunRow(
         result.digest, result.status, failure(result.failure) if result.failure else None,
         failures.failure(result.failure) if result.failure else "", result.errors or None,
@@ -271,7 +271,7 @@ def run_row(result: ResultRecord[Any]) -> Row:
 
 
 def finite(value: Any) -> Any:
-    """The same with null for numbers that are not finite: JSON has no word for them."""
+    """Value with null for numbers that are not finite, which JSON cannot write."""
     if isinstance(value, dict):
         return {key: finite(one) for key, one in value.items()}
     if isinstance(value, list | tuple):
@@ -312,5 +312,5 @@ def exactly(keys: Sequence[str], value: Row) -> Row:
 
 
 def nullable(field: Row) -> Row:
-    """A field whose value may be no finite number, which JSON has no word for."""
+    """Schema of a field whose value may be null for a number that is not finite."""
     return {"anyOf": [field, {"type": "null"}]} if field.get("type") == "number" else field

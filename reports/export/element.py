@@ -1,4 +1,4 @@
-"""Element tests as JSON: what any study of Examinations has."""
+"""Element tests as JSON, what any study of Examinations has."""
 
 from mpm_verify.reports.export.examined import more
 

@@ -1,4 +1,4 @@
-"""What the JSON document of Examinations has beside that of any study: what came out, and parameters."""
+"""Additions of Examinations to their JSON document: what came out, and parameters."""
 
 from dataclasses import asdict
 from typing import Any
@@ -8,7 +8,7 @@ from mpm_verify.reports.sentences.remarks import lead, parameters
 
 
 def more(record: Record) -> dict[str, Any]:
-    """`lead`, `findings` and `parameters` of each."""
+    """Additions by name of the examination: `lead`, `findings` and `parameters`."""
     return {
         name: {
             "lead": lead(one),

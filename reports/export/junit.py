@@ -1,4 +1,4 @@
-"""Verdicts and checks as JUnit XML, for CI servers: a test each; what is not a PASS is a failure or an error."""
+"""Verdicts and checks as JUnit XML, for CI servers, a test each; what is not a PASS is a failure or an error."""
 
 import os
 from pathlib import Path
@@ -19,7 +19,9 @@ def writable(path: Path | None, option: str) -> None:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise ValueError(f"cannot write {option} {path}: {path.parent} is no folder that can be made") from error
+        raise ValueError(
+            f"cannot write {option} {path}: {path.parent} cannot be made; name a file in a folder that can be written"
+        ) from error
     if path.is_dir() or not os.access(path.parent, os.W_OK):
         raise ValueError(f"cannot write {option} {path}: name a file in a folder that can be written")
 
@@ -40,7 +42,7 @@ def write_junit(path: Path, record: Record) -> None:
 
 
 def _verdict(suite: Any, record: Record, finding: Finding) -> None:
-    """A judged quantity as a test; its time is that of its levels."""
+    """Test of a judged quantity; its time is that of its levels."""
     plan, v = finding.plan, finding.verdict
     names = [str(value) for key, value in record.columns(plan.run).items() if key != "ppc"]
     case = ElementTree.SubElement(
@@ -57,7 +59,7 @@ def _verdict(suite: Any, record: Record, finding: Finding) -> None:
 
 
 def _check(suite: Any, study: str, check: Check) -> None:
-    """A check as a test."""
+    """Test of a check."""
     case = ElementTree.SubElement(suite, "testcase", classname=f"{study}.{check.group}", name=check.name, time="0")
     if check.outcome is not Outcome.PASS:
         kind = "error" if check.outcome is Outcome.ERROR else "failure"

@@ -1,4 +1,4 @@
-"""Frame indifference as JSON: what any study of Examinations has."""
+"""Frame indifference as JSON, what any study of Examinations has."""
 
 from mpm_verify.reports.export.examined import more
 

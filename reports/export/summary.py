@@ -1,4 +1,4 @@
-"""A study in a few lines of Markdown, for the summary of a CI job."""
+"""Study in a few lines of Markdown, for the summary of a CI job."""
 
 from mpm_verify.reports import words
 from mpm_verify.reports.frames import Record
@@ -8,16 +8,16 @@ MARKS = {"PASS": "✅", "FAIL": "❌", "INCONCLUSIVE": "❔", "ERROR": "⚠️"}
 
 
 def markdown(record: Record) -> str:
-    """Heading with the outcome, a row a judged quantity, a row a check that did not pass."""
+    """Heading with the outcome, a row for each judged quantity and for each check that did not pass."""
     study, found = record.study, record.analysis
     lines = [f"### {MARKS[found.outcome]} {found.outcome}: {escaped(study.title)}", "", f"`{study.command}`", ""]
     judged = [f for f in found.findings if f.plan.judged]
     if judged:
         lines += ["| | refinement | quantity | order | expected | reason |", "| --- | --- | --- | --- | --- | --- |"]
         for f in judged:
-            d, v = f.plan, f.verdict
-            cells = (f"{MARKS[v.outcome]} {v.outcome}", record.label(d.run), f"{d.quantity} in {d.norm}",
-                     words.order(v.observed), verdicts.registered(d.expectation),
+            plan, v = f.plan, f.verdict
+            cells = (f"{MARKS[v.outcome]} {v.outcome}", record.label(plan.run), f"{plan.quantity} in {plan.norm}",
+                     words.order(v.observed), verdicts.registered(plan.expectation),
                      commands.reason(study, f))  # fmt: skip
             lines.append(f"| {' | '.join(map(escaped, cells))} |")
     if found.checks:

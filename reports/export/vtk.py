@@ -57,7 +57,7 @@ def write_series(
 
 
 def _fields(snapshot: Mapping[str, Array]) -> dict[str, Singles]:
-    """The fields with the components that VTK expects; ValueError where the snapshot is not what it must be."""
+    """Fields with the components that VTK expects; ValueError where the snapshot is not what it must be."""
     count = len(snapshot["x"]) if "x" in snapshot else 0
     for key, shape in (("x", (count, 2)), ("corners", (count, 4, 2))):
         if count == 0 or (key in snapshot and snapshot[key].shape != shape):
@@ -68,7 +68,7 @@ def _fields(snapshot: Mapping[str, Array]) -> dict[str, Singles]:
 
 
 def _components(key: str, array: Array, count: int) -> Singles:
-    """One row a particle: 1 number, 3 of a vector, 9 of a tensor, 6 of a symmetric one (xx yy zz xy yz xz)."""
+    """Components, a row each: 1 number, 3 of a vector, 9 of a tensor, 6 of a symmetric one (xx yy zz xy yz xz)."""
     if not (key.isascii() and key.isidentifier()):  # meshio does not escape what XML reserves
         raise ValueError(f"the name of a field must be made of letters, digits and _, and {key!r} is not")
     if array.shape == (count,):
@@ -85,15 +85,15 @@ def _components(key: str, array: Array, count: int) -> Singles:
 
 
 def _single(array: Array) -> Singles:
-    with np.errstate(over="ignore"):  # what a lost run leaves becomes infinite
+    with np.errstate(over="ignore"):  # what a failed run leaves becomes infinite
         return array.astype(np.float32)
 
 
-def _grid(path: Path, kind: str, places: Array, fields: Mapping[str, Singles]) -> None:
-    """One cell of that kind a particle, with corners of its own (P,C,2): domains of CPDI may part."""
-    count, corners, _ = places.shape
-    points = _single(np.pad(places.reshape(-1, 2), ((0, 0), (0, 1))))
-    cells = np.arange(count * corners, dtype=np.int64).reshape(count, corners)
+def _grid(path: Path, kind: str, corners: Array, fields: Mapping[str, Singles]) -> None:
+    """Write one cell of that kind a particle, with corners of its own (P,C,2): domains of CPDI may part."""
+    count, each, _ = corners.shape
+    points = _single(np.pad(corners.reshape(-1, 2), ((0, 0), (0, 1))))
+    cells = np.arange(count * each, dtype=np.int64).reshape(count, each)
     mesh = meshio.Mesh(points, [(kind, cells)], cell_data={key: [array] for key, array in fields.items()})
     try:
         with TemporaryDirectory(dir=path.parent, prefix=".vtk") as scratch:  # meshio writes to nothing but a path
@@ -104,7 +104,7 @@ def _grid(path: Path, kind: str, places: Array, fields: Mapping[str, Singles]) -
 
 
 def _collection(path: Path, files: Mapping[Path, float]) -> None:
-    """ParaView's list of files and their times, next to the files."""
+    """Write ParaView's list of files and their times, next to the files."""
     root = ElementTree.Element("VTKFile", type="Collection", version="0.1")
     collection = ElementTree.SubElement(root, "Collection")
     for file, time in files.items():

@@ -1,1 +1,1 @@
-"""One figure a file: each takes a Record and gives matplotlib figures by name, nothing is drawn on a screen."""
+"""Figures, one a file: each takes a Record and gives matplotlib figures by name, nothing is drawn on a screen."""

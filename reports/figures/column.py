@@ -1,4 +1,4 @@
-"""The collapsing column in the paper's style: fronts and profiles, energies, the set-up, snapshots, refinement.
+"""Figures of the collapsing column in the paper's style: fronts, profiles, energies, set-up, snapshots, refinement.
 
 The band of the experiment is shaded where it is known; it is no curve. Time is counted in sqrt(h0/g).
 """
@@ -33,13 +33,13 @@ Labels = Sequence[str]
 
 
 def shared_experiment(ran: Sequence[FinishedRun]) -> Experiment | None:
-    """What is known of the experiment, where all runs are of one size of column."""
+    """Bands of the experiment, where all runs are of one size of column."""
     sizes = {(one.run.width, one.run.aspect, one.run.g) for one in ran}
     return experiment(ran[0].run) if len(sizes) == 1 else None
 
 
 def fronts(ran: Sequence[FinishedRun], labels: Labels) -> Figure:
-    """Where 99 % of the mass lies against time."""
+    """Front, within which 99 % of the mass lies, against time."""
     with rc_context(style.RC):
         figure, axes = style.panel(SIZE, xlabel=TIME, ylabel="front, 99 % of the mass [m]")
         known, run = shared_experiment(ran), ran[0].run
@@ -51,8 +51,8 @@ def fronts(ran: Sequence[FinishedRun], labels: Labels) -> Figure:
                 axes.plot([time, time], [low, high], color=style.GREY, linewidth=1, linestyle=(0, (2, 2)))
             axes.annotate("experiment, at rest", (last, low), xytext=(-4, -4), textcoords="offset points", ha="right",
                           va="top", color=style.GREY, fontsize=10)  # fmt: skip
-        for place, (one, label) in enumerate(zip(ran, labels, strict=True)):
-            axes.plot(one.curves["t"] / one.run.tau, one.curves["front_99"], label=label, **stroke(place))
+        for number, (one, label) in enumerate(zip(ran, labels, strict=True)):
+            axes.plot(one.curves["t"] / one.run.tau, one.curves["front_99"], label=label, **stroke(number))
         axes.set(xlim=(0, last), ylim=(0, None))
         legend(figure, labels)
     return figure
@@ -75,35 +75,35 @@ def profiles(ran: Sequence[FinishedRun], labels: Labels) -> Figure:
             beside = (1.1 * run.width, sum(known.height) / 2)
             axes.annotate("its height at the wall", beside, va="center", color=style.GREY, fontsize=10)
         axes.plot([run.width, run.width], [0, tall], color=style.GREY, linewidth=1, linestyle=(0, (2, 2)))
-        for place, (one, label) in enumerate(zip(ran, labels, strict=True)):
+        for number, (one, label) in enumerate(zip(ran, labels, strict=True)):
             height = one.curves["profile"][-1]
-            axes.plot((np.arange(len(height)) + 0.5) * one.run.strip, height, label=label, **stroke(place))
+            axes.plot((np.arange(len(height)) + 0.5) * one.run.strip, height, label=label, **stroke(number))
         axes.set(xlim=(0, far), ylim=(0, tall))
         legend(figure, labels)
     return figure
 
 
 def energy(ran: Sequence[FinishedRun], labels: Labels, name: str) -> Figure:
-    """An energy of each run over the potential energy there was."""
+    """Energy of each run over the initial potential energy."""
     with rc_context(style.RC):
         figure, axes = style.panel(SIZE, xlabel=TIME, ylabel=f"{name} energy / initial potential energy")
-        for place, (one, label) in enumerate(zip(ran, labels, strict=True)):
-            fraction = one.curves[name] / one.curves["potential"][0]
-            axes.plot(one.curves["t"] / one.run.tau, fraction, label=label, **stroke(place))
+        for number, (one, label) in enumerate(zip(ran, labels, strict=True)):
+            part = one.curves[name] / one.curves["potential"][0]
+            axes.plot(one.curves["t"] / one.run.tau, part, label=label, **stroke(number))
         axes.set(xlim=(0, None), ylim=(0, None))
         legend(figure, labels)
     return figure
 
 
 def budget(one: FinishedRun) -> Figure:
-    """Where the energy of one run is, layer upon layer; together they are the potential energy there was."""
+    """Energy budget of one run, layer upon layer; together they are the initial potential energy."""
     c, start = one.curves, float(one.curves["potential"][0])
     layers = {
         "potential": c["potential"], "kinetic": c["kinetic"], "elastic": c["elastic"], "plastic": c["plastic"],
         "damping": c["damping"], "walls": -c["walls"], "lost by the method": c["transfer"] + c["convection"],
     }  # fmt: skip
     with rc_context(style.RC):
-        figure, axes = style.panel(SIZE, xlabel=TIME, ylabel="fraction of the initial potential energy")
+        figure, axes = style.panel(SIZE, xlabel=TIME, ylabel="energy / initial potential energy")
         below, t, shown = np.zeros_like(c["t"]), c["t"] / one.run.tau, []
         for (name, layer), colour in zip(layers.items(), style.COLOURS, strict=False):
             above = below + layer / start
@@ -118,7 +118,7 @@ def budget(one: FinishedRun) -> Figure:
 
 
 def set_up(run: ColumnRun, x: Floats, corners: Floats | None) -> Figure:
-    """The paper's Figure 3: the column at its wall before it is released, and a corner of it with cells and domains."""
+    """Set-up, the paper's Figure 3: the column before it is released, and a corner of it with cells and domains."""
     dx = run.width / run.cells
     with rc_context(style.RC):
         figure = Figure(figsize=(WIDE, 5.6), layout="constrained")
@@ -144,20 +144,20 @@ def set_up(run: ColumnRun, x: Floats, corners: Floats | None) -> Figure:
 
 
 def wall(axes: Axes, run: ColumnRun) -> None:
-    """Floor and wall as thick lines."""
+    """Draw floor and wall as thick lines."""
     axes.plot([0, 0, 40 * run.width], [2 * run.height, 0, 0], color=style.INK, linewidth=2.0, zorder=5,
               solid_capstyle="butt", scalex=False, scaley=False)  # fmt: skip
 
 
 def snapshots(run: ColumnRun, arrays: Mapping[str, Any], most: int = 6) -> Figure:
-    """Domains, or particles, at a few times; bands of sand by the height at which they began."""
+    """Snapshots of domains, or particles, at a few times; bands of sand by the height at which they began."""
     times = arrays["snapshot_t"]
     chosen = sorted({*range(min(most, len(times)) - 1), len(times) - 1})  # it moves at first
     far = 1.04 * float(np.quantile(away(run, arrays["snapshot_x"][-1])[:, 0], 0.9995))
-    columns, across = 3, 3.9
-    rows, up = -(-len(chosen) // columns), across * run.height / far + 0.55
+    columns, width = 3, 3.9
+    rows, height = -(-len(chosen) // columns), width * run.height / far + 0.55
     with rc_context(style.RC):
-        figure = Figure(figsize=(columns * across, rows * up), layout="constrained")
+        figure = Figure(figsize=(columns * width, rows * height), layout="constrained")
         panels = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True).ravel()
         first = away(run, arrays["snapshot_x"][0])[:, 1]
         for axes, number in zip(panels, chosen, strict=False):
@@ -174,9 +174,9 @@ def snapshots(run: ColumnRun, arrays: Mapping[str, Any], most: int = 6) -> Figur
     return figure
 
 
-def away(run: ColumnRun, places: Any) -> Floats:
-    """Places with the wall at x = 0, as float64."""
-    found = np.array(places, float)
+def away(run: ColumnRun, positions: Any) -> Floats:
+    """Positions with the wall at x = 0, as float64."""
+    found = np.array(positions, float)
     if run.mirror:
         found[..., 0] = run.channel * run.width - found[..., 0]
     return found
@@ -185,7 +185,7 @@ def away(run: ColumnRun, places: Any) -> Floats:
 def domains(
     axes: Axes, run: ColumnRun, x: Floats, corners: Floats | None, edge: bool = False, first: Floats | None = None
 ) -> None:
-    """Domains as quadrilaterals, particles as points where they have none."""
+    """Draw domains as quadrilaterals, particles as points where they have none."""
     height = x[:, 1] if first is None else first
     dark = (height / run.height * BANDS).astype(int) % 2 == 0
     colours = np.where(dark[:, None], [DARK], [PALE])[:, 0]
@@ -199,13 +199,13 @@ def domains(
 
 
 def refined(series: Sequence[Refined], xlabel: str) -> Figure:
-    """Each quantity over its finest value, against the spacing, a mark a level."""
+    """Figure of each quantity over its finest value, against the spacing, a mark a level."""
     with rc_context(style.RC):
         figure, axes = style.panel(SIZE, xlabel=xlabel, ylabel="value over that of the finest level")
-        for place, one in enumerate(series):
+        for number, one in enumerate(series):
             values = np.array([value for _, value in one.levels])
-            axes.plot(range(len(values)), values / values[0], marker=style.MARKERS[place % len(style.MARKERS)],
-                      label=words.quantity(one.quantity), **stroke(place))  # fmt: skip
+            axes.plot(range(len(values)), values / values[0], marker=style.MARKERS[number % len(style.MARKERS)],
+                      label=words.quantity(one.quantity), **stroke(number))  # fmt: skip
         numbers = [f"{value:g}" for value, _ in series[0].levels]  # the axis says of what
         axes.set_xticks(range(len(numbers)), numbers)
         axes.invert_xaxis()
@@ -213,16 +213,16 @@ def refined(series: Sequence[Refined], xlabel: str) -> Figure:
     return figure
 
 
-def stroke(place: int) -> dict[str, Any]:
-    """Colour and line of a run by its place in the study: no two of 32 alike."""
+def stroke(number: int) -> dict[str, Any]:
+    """Colour and line of a run by its number in the study: no two of 32 alike."""
     return {
-        "color": style.COLOURS[place % len(style.COLOURS)],
-        "linestyle": STROKES[(place // len(style.COLOURS) + place) % len(STROKES)],
+        "color": style.COLOURS[number % len(style.COLOURS)],
+        "linestyle": STROKES[(number // len(style.COLOURS) + number) % len(STROKES)],
     }
 
 
 def legend(figure: Figure, labels: Labels, columns: int = 2) -> None:
-    """Below, in as many columns as the labels leave room for; for many lines of it the figure grows."""
+    """Draw the legend below, in as many columns as labels leave room for; for many lines the figure grows."""
     handles, names = figure.axes[0].get_legend_handles_labels()
     if len(labels) > 1:
         longest = max(map(len, labels))

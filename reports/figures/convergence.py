@@ -40,12 +40,12 @@ def convergence(record: Record, solution: str, quantity: str = "u") -> dict[str,
 
 
 def _columns(series: int) -> int:
-    """Of the legend below both panels."""
+    """Number of columns of the legend below both panels."""
     return series if series < 4 else 2 if series <= style.SEVERAL else 5
 
 
 def cell_axis(axes: Axes, series: Sequence[Series]) -> None:
-    """A logarithmic axis of cell sizes with a tick 1/N at each that was asked for."""
+    """Draw a logarithmic axis of cell sizes with a tick 1/N at each that was asked for."""
     cells = sorted({run.cells for s in series for run in s.runs}, reverse=True)
     axes.set_xscale("log")
     axes.set_xticks([1 / n for n in cells], [words.cell_size(n) for n in cells])
@@ -55,16 +55,16 @@ def cell_axis(axes: Axes, series: Sequence[Series]) -> None:
 
 
 def methods(record: Record) -> list[str]:
-    """The methods of the study in its order: the order of their colours."""
+    """Methods of the study in its order: the order of their colours."""
     return list(dict.fromkeys(run.method for run in record.study.runs))
 
 
 def _panel(part: Figure | SubFigure, record: Record, series: Sequence[Series], quantity: str, norm: str) -> None:
-    """One norm: the strip of failed runs if there are any, and the errors below it."""
-    lost = [s for s in series if record.failed(s)]
-    if lost:
-        strip, axes = part.subplots(2, 1, sharex=True, height_ratios=[0.055 * len(lost) + 0.02, 1.0])
-        _failures(strip, record, lost)
+    """Draw one norm: the strip of failed runs if there are any, and the errors below it."""
+    failed = [s for s in series if record.failed(s)]
+    if failed:
+        strip, axes = part.subplots(2, 1, sharex=True, height_ratios=[0.055 * len(failed) + 0.02, 1.0])
+        _failures(strip, record, failed)
     else:
         strip = axes = part.subplots()
     for s in series:
@@ -83,27 +83,27 @@ def _panel(part: Figure | SubFigure, record: Record, series: Sequence[Series], q
     strip.set_title(TITLES[norm], loc="left", fontweight="bold")
 
 
-def _failures(strip: Axes, record: Record, lost: Sequence[Series]) -> None:
-    """A row a series, a cross at each cell size at which its run failed."""
-    for row, s in enumerate(lost):
+def _failures(strip: Axes, record: Record, failed: Sequence[Series]) -> None:
+    """Draw a row for each series, a cross at each cell size at which its run failed."""
+    for row, s in enumerate(failed):
         colour = style.look(methods(record), s.first.method, s.first.ppc).colour
         h = [1 / run.cells for run in record.failed(s)]
         strip.plot(h, [row] * len(h), "x", color=colour, markersize=8, markeredgewidth=2.4, clip_on=False)
-    names = [f"{words.method(s.first.method)} {s.first.ppc} failed" for s in lost]
-    strip.set_yticks(range(len(lost)), names, fontsize=9)
-    strip.set_ylim(len(lost) - 0.4, -0.6)
+    names = [f"{words.method(s.first.method)} {s.first.ppc} failed" for s in failed]
+    strip.set_yticks(range(len(failed)), names, fontsize=9)
+    strip.set_ylim(len(failed) - 0.4, -0.6)
     strip.tick_params(length=0, labelbottom=False)
     strip.spines[:].set_visible(False)
     strip.set_facecolor("#f4f1ee")
 
 
 def _triangle(axes: Axes, record: Record, series: Sequence[Series], quantity: str, norm: str) -> None:
-    """The slope to compare with, below all errors: the order registered, plus what the norm adds."""
+    """Draw the slope to compare with, below all errors: the order registered, plus what the norm adds."""
     points = [(1 / run.cells, e) for s in series for run, e in record.errors(s, quantity, norm) if e > 0]
     sizes = sorted({h for h, _ in points})
     if len(sizes) < 2:
         return
-    orders = [d.expectation.order for d in record.study.plans if d.expectation and d.expectation.order]
+    orders = [plan.expectation.order for plan in record.study.plans if plan.expectation and plan.expectation.order]
     order = orders[0] if orders else 2.0
     at = max(0, (len(sizes) - 1) // 2 - (len(sizes) > 4))
     h0, h1, slope = sizes[at], sizes[at + 1], order + EXTRA[norm]

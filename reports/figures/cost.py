@@ -1,7 +1,7 @@
 """Error against cost: particle updates, and processor seconds as measured, both log-log; a line a group of runs.
 
 A row of two panels a title, so that a page shows several solutions. Points of one line are joined by rising cost.
-Errors are shares of the rms of the exact quantity, so that rows can be compared.
+Errors are over the rms of the exact quantity, so that rows can be compared.
 """
 
 from collections.abc import Sequence
@@ -24,7 +24,7 @@ WIDTH = 8.6
 
 @dataclass(frozen=True)
 class Line:
-    """Runs that belong together, with their name and their look (`style.Look.plot`)."""
+    """Line of runs that belong together, with their name and their look (`style.Look.plot`)."""
 
     label: str
     runs: Sequence[Run]
@@ -33,14 +33,14 @@ class Line:
 
 @dataclass(frozen=True)
 class Row:
-    """What one row of panels shows."""
+    """Row of panels."""
 
     title: str
     lines: Sequence[Line]
 
 
 def cost_figure(record: Record, rows: Sequence[Row], quantity: str = "u", norm: str = "rms") -> Figure:
-    """One row of panels a Row; a legend of all labels below."""
+    """Figure with a row of panels for each Row; a legend of all labels below."""
     with rc_context(style.RC | {"lines.markersize": 5.0, "lines.linewidth": 1.4}):
         figure = Figure(figsize=(WIDTH, HEAD + ROW * len(rows)), layout="constrained")
         panels = figure.subplots(len(rows), 2, squeeze=False, sharey="row")
@@ -51,7 +51,7 @@ def cost_figure(record: Record, rows: Sequence[Row], quantity: str = "u", norm: 
                 if panel.lines:  # else there is nothing to take the range from
                     panel.set(xscale="log", yscale="log")
             left.set_title(row.title, loc="left", fontweight="bold", fontsize=10.5)
-            left.set_ylabel(f"error of {words.quantity(quantity)}, share", fontsize=10)
+            left.set_ylabel(f"error of {words.quantity(quantity)}, relative", fontsize=10)
         panels[-1][0].set_xlabel("particle updates")
         panels[-1][1].set_xlabel("processor seconds")
         labels = {line.label: line for row in rows for line in row.lines}
@@ -61,7 +61,7 @@ def cost_figure(record: Record, rows: Sequence[Row], quantity: str = "u", norm: 
 
 
 def _draw(left: Axes, right: Axes, record: Record, line: Line, quantity: str, norm: str) -> None:
-    """One line in both panels."""
+    """Draw one line in both panels."""
     points = []
     for run in line.runs:
         result, error = record.result(run), record.error(run, quantity, norm)

@@ -1,4 +1,4 @@
-"""An element test: stress path, stress against strain, volume against strain; and the error against the step."""
+"""Figures of an element test: stress path, stress against strain, volume against strain; error against the step."""
 
 from collections.abc import Mapping, Sequence
 
@@ -17,7 +17,7 @@ STRAIN = {"gamma": "shear strain ε₁ − ε₃", "ey": "vertical strain, compr
 
 
 def path(curve: Curve, exact: Curve | None, strength: tuple[float, float] | None) -> Figure:
-    """t against s, and the line t = a + b s of the strength (a, b)."""
+    """Stress path, t against s, and the line t = a + b s of the strength (a, b)."""
     with rc_context(style.RC):
         figure, axes = _panel("mean stress s, compression positive", "radius t")
         if strength:
@@ -37,7 +37,7 @@ def stress(
     marks: Sequence[tuple[float, float]] = (),
     limit: float | None = None,
 ) -> Figure:
-    """A stress against a strain; `marks` are of a reference table, `limit` is the stress that it comes to."""
+    """Stress against a strain; `marks` are of a reference table, `limit` is the stress that it comes to."""
     labels = {"t": "radius t", "tau": "shear stress τ", "sy": "vertical stress, compression positive"}
     with rc_context(style.RC):
         figure, axes = _panel(_strain(x, y), labels[y])
@@ -63,9 +63,9 @@ def errors(curves: Mapping[str, Curve], names: Mapping[str, str]) -> Figure:
         figure = Figure(figsize=(6.4, 5.0), layout="constrained")
         axes = figure.subplots()
         drawn = {name: c for name, c in curves.items() if np.isfinite(c["error"]).any() and (c["error"] > 0).any()}
-        for place, (name, curve) in enumerate(drawn.items()):
-            axes.plot(curve["steps"], np.maximum(curve["error"], 1e-17), color=style.COLOURS[place % 8],
-                      marker=style.MARKERS[place % 8], markersize=5, label=names[name])  # fmt: skip
+        for number, (name, curve) in enumerate(drawn.items()):
+            axes.plot(curve["steps"], np.maximum(curve["error"], 1e-17), color=style.COLOURS[number % 8],
+                      marker=style.MARKERS[number % 8], markersize=5, label=names[name])  # fmt: skip
         axes.set(xscale="log", yscale="log", xlabel="steps", ylabel="error at the end, relative")
         if drawn:
             figure.legend(loc="outside lower center", ncols=2, fontsize=9.5)
@@ -84,7 +84,7 @@ def _strain(x: str, y: str) -> str:
 
 
 def _both(axes: Axes, curve: Curve, exact: Curve | None, x: str, y: str) -> None:
-    """The computed curve over the exact one, and a legend where there are two."""
+    """Draw the computed curve over the exact one, and a legend where there are two."""
     if exact is not None and x in exact and y in exact:
         axes.plot(exact[x], exact[y], color=EXACT, linewidth=6.5, label="exact")
     axes.plot(curve[x], curve[y], color=MINE, linewidth=1.4, label="computed")
@@ -95,7 +95,7 @@ def _both(axes: Axes, curve: Curve, exact: Curve | None, x: str, y: str) -> None
 
 
 def _marks(axes: Axes, marks: Sequence[tuple[float, float]]) -> None:
-    """Points of a reference table."""
+    """Draw the points of a reference table."""
     if marks:
         axes.plot(*np.array(marks).T, linestyle="none", marker="o", markersize=6, markerfacecolor="white",
                   color=style.COLOURS[1], label="table")  # fmt: skip

@@ -1,4 +1,4 @@
-"""The error of u over the square at the last step of one run, on the domains of its particles.
+"""Error of u over the square at the last step of one run, on the domains of its particles.
 
 Domains are drawn as the method has them, so that gaps and overlaps are seen. Methods that know points only are drawn
 with the parallelograms x ± r1 ± r2, r_i = F r0_i: Sadeghirad, Brannon & Burghardt (2011), doi:10.1002/nme.3110.
@@ -23,7 +23,7 @@ OUTLINED = 4096  # more domains than that are drawn without outlines: they would
 
 
 def choose(record: Record, method: str, solution: str, cells: int = CELLS, ppc: int = PPC) -> Run | None:
-    """The finished run of a method nearest to that many cells, then particles per cell; None if none finished."""
+    """Finished run of a method nearest to that many cells, then particles per cell; None if none finished."""
     runs = [run for s in record.drawn for run in s.runs if (run.method, run.solution) == (method, solution)]
     done = [run for run in runs if (r := record.result(run)) and r.status == "finished"]
     return min(done, key=lambda r: (abs(np.log2(r.cells / cells)), abs(r.ppc - ppc), r.cells, r.ppc), default=None)
@@ -60,7 +60,7 @@ def error_field(run: Run, arrays: Arrays) -> Figure:
 
 
 def _limits(corners: NDArray[np.float64], axis: int) -> tuple[float, float]:
-    """The domains, with a little air."""
+    """Limits of an axis: the domains, with a little air."""
     values = corners[..., axis][np.isfinite(corners[..., axis])]
     low, high = (float(values.min()), float(values.max())) if len(values) else (0.0, 1.0)
     return low - 0.015 * (high - low), high + 0.015 * (high - low)

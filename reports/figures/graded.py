@@ -1,4 +1,4 @@
-"""Graded layouts against uniform ones: error against cost, a figure a solution."""
+"""Graded layouts against uniform ones: error against cost, a figure for each solution."""
 
 from collections.abc import Iterator
 
@@ -18,7 +18,7 @@ def found(record: Record) -> bool:
 
 
 def figure(record: Record, solution: str, quantity: str = "u") -> Figure:
-    """Error against cost on one solution: a row a method, a line a layout and particle count."""
+    """Error against cost on one solution: a row for each method, a line for each layout and count."""
     runs = [run for run in record.study.runs if run.solution == solution]
     methods = dict.fromkeys(run.method for run in runs)
     rows = [Row(words.method(m), list(lines([run for run in runs if run.method == m]))) for m in methods]
@@ -26,7 +26,7 @@ def figure(record: Record, solution: str, quantity: str = "u") -> Figure:
 
 
 def lines(runs: list[Run]) -> Iterator[Line]:
-    """The refinements of one solution and method: colour and marker tell the layout, line and filling the count."""
+    """Lines of one solution and method: colour and marker tell the layout, line and filling the count."""
     kinds = list(dict.fromkeys(map(kind, runs)))
     for layout, ppc in dict.fromkeys((kind(run), run.ppc) for run in runs):
         mine = [run for run in runs if (kind(run), run.ppc) == (layout, ppc)]

@@ -1,4 +1,4 @@
-"""Local orders: the order between neighbouring cell sizes, which shows whether the order has settled."""
+"""Local orders: the order between consecutive cell sizes, which shows whether the order has settled."""
 
 from collections.abc import Sequence
 from itertools import pairwise
@@ -17,7 +17,7 @@ from mpm_verify.reports.frames import Record
 
 
 def orders(record: Record, series: Series, quantity: str, norm: str) -> list[tuple[int, int, float]]:
-    """(cells, cells, order) for each pair of neighbouring finished runs, coarse to fine; errors of zero have none."""
+    """Triples (cells, cells, order) of consecutive finished runs, coarse to fine; none for errors of zero."""
     found = [(run.cells, error) for run, error in record.errors(series, quantity, norm) if error > 0]
     if len(found) < 2:
         return []
@@ -44,23 +44,23 @@ def local_order_figure(record: Record, solution: str, quantity: str = "u", norm:
 
 
 def _draw(axes: Axes, record: Record, series: Series, cells: Sequence[int], quantity: str, norm: str) -> bool:
-    """A point for each pair of cell sizes; False where there is none."""
+    """Draw a point for each pair of cell sizes; False where there is none."""
     found = orders(record, series, quantity, norm)
-    places = [(cells.index(a) + cells.index(b) - 1) / 2 for a, b, _ in found]
+    positions = [(cells.index(a) + cells.index(b) - 1) / 2 for a, b, _ in found]
     look = style.look(methods(record), series.first.method, series.first.ppc)
-    axes.plot(places, [p for *_, p in found], **look.plot)
+    axes.plot(positions, [p for *_, p in found], **look.plot)
     return bool(found)
 
 
 def _band(axes: Axes, record: Record, solution: str, quantity: str, norm: str) -> None:
-    """The band that was registered for the first judged order."""
-    for d in record.study.plans:
-        e = d.expectation
+    """Draw the band that was registered for the first judged order."""
+    for plan in record.study.plans:
+        e = plan.expectation
         if (
             e
             and e.order is not None
-            and d.judged
-            and (d.run.solution, d.quantity, d.norm) == (solution, quantity, norm)
+            and plan.judged
+            and (plan.run.solution, plan.quantity, plan.norm) == (solution, quantity, norm)
         ):
             axes.axhspan(e.order - e.below, e.order + e.above, color="#009E73", alpha=0.16, linewidth=0)
             axes.annotate(

@@ -1,4 +1,4 @@
-"""The paper's Figure 2 and what belongs to it: stress of a turned block, inertia, orders, rates in shear."""
+"""Figures of frame indifference: the paper's Figure 2 (stress of a turned block), inertia, orders, rates in shear."""
 
 from collections.abc import Mapping, Sequence
 
@@ -20,7 +20,7 @@ UNSEEN = 0.02  # of |sigma_v|: negative controls that miss by less lie on the li
 
 
 def stresses(exact: Curve, blocks: Mapping[str, Curve], wave: Curve | None = None) -> Figure:
-    """Figure 2, a panel a block: its mean stress over |sigma_v| against time, marks on lines of the closed form.
+    """Figure 2, a panel for each block: its mean stress over |sigma_v| against time, marks on lines of the closed form.
 
     `wave`: vertical stress of the first block with its own vibration, in the ramp.
     """
@@ -30,10 +30,10 @@ def stresses(exact: Curve, blocks: Mapping[str, Curve], wave: Curve | None = Non
         for axes, (title, block) in zip(panels, blocks.items(), strict=True):
             axes.set(xlabel="time [s]", xlim=(0, 2), ylim=(-1.15, 0.4), title=title)
             axes.axvline(1.0, color=style.GREY, linewidth=0.8)
-            for place, name in enumerate(("xx", "yy", "xy")):
-                axes.plot(exact["t"], exact[name], linewidth=1.4, color=style.COLOURS[place])
-                axes.plot(block["t"][::SPARSE], block[name][::SPARSE], linestyle="none", marker=style.MARKERS[place],
-                          markersize=5, markerfacecolor="white", color=style.COLOURS[place])  # fmt: skip
+            for k, name in enumerate(("xx", "yy", "xy")):
+                axes.plot(exact["t"], exact[name], linewidth=1.4, color=style.COLOURS[k])
+                axes.plot(block["t"][::SPARSE], block[name][::SPARSE], linestyle="none", marker=style.MARKERS[k],
+                          markersize=5, markerfacecolor="white", color=style.COLOURS[k])  # fmt: skip
         if wave:
             panels[0].plot(wave["t"], wave["yy"], color=style.INK, linewidth=0.9)
         panels[0].set_ylabel("mean stress / |σ$_v$|, tension positive")
@@ -49,11 +49,11 @@ def co_rotated(runs: Mapping[str, Curve]) -> Figure:
     """Shear stress as the turning box sees it: the mean, and the largest of a particle."""
     with rc_context(style.RC):
         figure, axes = style.panel(SIZE, xlabel="time [s]", ylabel="|co-rotated shear stress| / |σ$_v$|", xlim=(1, 2))
-        for place, (label, curve) in enumerate(runs.items()):
+        for k, (label, curve) in enumerate(runs.items()):
             late = curve["t"] > 1.0
-            axes.plot(curve["t"][late], np.abs(curve["own_xy"][late]), color=style.COLOURS[place],
+            axes.plot(curve["t"][late], np.abs(curve["own_xy"][late]), color=style.COLOURS[k],
                       label=f"{label}: mean")  # fmt: skip
-            axes.plot(curve["t"][late], curve["shear"][late], color=style.COLOURS[place], linestyle=":",
+            axes.plot(curve["t"][late], curve["shear"][late], color=style.COLOURS[k], linestyle=":",
                       label="largest of a particle")  # fmt: skip
         axes.set_yscale("log")
         axes.set_ylim(1e-5, 0.5)
@@ -65,26 +65,25 @@ def inertia(runs: Mapping[str, Curve]) -> Figure:
     """Mean vertical stress in the frame of the box less its static value, over |sigma_v|."""
     with rc_context(style.RC):
         figure, axes = style.panel(SIZE, xlabel="time [s]", ylabel="co-rotated σ$_{yy}$ / |σ$_v$| + 1", xlim=(1, 2))
-        for place, (label, curve) in enumerate(runs.items()):
+        for k, (label, curve) in enumerate(runs.items()):
             late = curve["t"] > 1.0
-            axes.plot(curve["t"][late], curve["own_yy"][late] + 1, color=style.COLOURS[place], label=label,
-                      linestyle=("-", "--", ":")[place % 3])  # fmt: skip
+            axes.plot(curve["t"][late], curve["own_yy"][late] + 1, color=style.COLOURS[k], label=label,
+                      linestyle=("-", "--", ":")[k % 3])  # fmt: skip
         figure.legend(loc="outside lower center", ncols=1)
     return figure
 
 
-def misread(exact: Curve, controls: Mapping[str, Curve]) -> Figure:
-    """Shear stress of Figure 2 by each negative control: lines for what is wrong, one set of marks for what is right
-    here."""
+def controls(exact: Curve, wrong: Mapping[str, Curve]) -> Figure:
+    """Shear stress of Figure 2 by each negative control: lines for what is wrong, marks for what is right."""
     with rc_context(style.RC):
         figure, axes = style.panel(SIZE, xlabel="time [s]", ylabel="σ$_{xy}$ / |σ$_v$|", xlim=(1, 2), ylim=(-0.4, 0.4))
         late = exact["t"] >= 1.0
         axes.plot(exact["t"][late], exact["xy"][late], color=style.LIGHT, linewidth=7, label="exact")
-        away = {name: float(np.abs(curve["xy"] - exact["xy"]).max()) for name, curve in controls.items()}
+        away = {name: float(np.abs(curve["xy"] - exact["xy"]).max()) for name, curve in wrong.items()}
         unseen = sum(miss < UNSEEN for miss in away.values())
-        for place, name in enumerate(name for name in controls if away[name] >= UNSEEN):
-            axes.plot(controls[name]["t"], controls[name]["xy"], color=style.COLOURS[place], linewidth=1.4,
-                      linestyle=("-", "--", ":", "-.")[place % 4], label=name.replace("_", " "))  # fmt: skip
+        for k, name in enumerate(name for name in wrong if away[name] >= UNSEEN):
+            axes.plot(wrong[name]["t"], wrong[name]["xy"], color=style.COLOURS[k], linewidth=1.4,
+                      linestyle=("-", "--", ":", "-.")[k % 4], label=name.replace("_", " "))  # fmt: skip
         if unseen:
             axes.plot(exact["t"][late][::10], exact["xy"][late][::10], "x", color=style.INK, markersize=5,
                       label=f"the {unseen} others")  # fmt: skip
@@ -98,10 +97,10 @@ def orders(errors: Mapping[str, Curve], rates: Sequence[str]) -> Figure:
         figure, axes = style.panel(
             SIZE, xlabel="steps in a quarter turn", ylabel="error of the stress at the end, relative"
         )
-        for place, (name, curve) in enumerate(errors.items()):
+        for k, (name, curve) in enumerate(errors.items()):
             right = name in rates
-            axes.plot(curve["steps"], curve["error"], color=style.COLOURS[place % len(style.COLOURS)],
-                      marker=style.MARKERS[place % len(style.MARKERS)], markersize=5,
+            axes.plot(curve["steps"], curve["error"], color=style.COLOURS[k % len(style.COLOURS)],
+                      marker=style.MARKERS[k % len(style.MARKERS)], markersize=5,
                       linestyle="-" if right else "--", markerfacecolor=None if right else "white",
                       label=name.replace("_", " "))  # fmt: skip
         axes.set(xscale="log", yscale="log")
@@ -113,14 +112,14 @@ def orders(errors: Mapping[str, Curve], rates: Sequence[str]) -> Figure:
 
 
 def shear(exact: Curves, computed: Curves, component: str) -> Figure:
-    """A stress component in simple shear over G, by each rate: the closed forms, marks for what was computed."""
+    """Stress component in simple shear over G, by each rate: the closed forms, marks for what was computed."""
     with rc_context(style.RC):
         symbol = {"s12": "σ$_{12}$", "s11": "σ$_{11}$"}[component]
         figure, axes = style.panel(SIZE, xlabel="shear γ", ylabel=f"{symbol} / G", xlim=(0, 8), ylim=(-2, 8))
-        for place, (name, curve) in enumerate(exact.items()):
-            axes.plot(curve["gamma"], curve[component], color=style.COLOURS[place], label=name.replace("_", " "))
+        for k, (name, curve) in enumerate(exact.items()):
+            axes.plot(curve["gamma"], curve[component], color=style.COLOURS[k], label=name.replace("_", " "))
             marks = computed[name]
-            axes.plot(marks["gamma"], marks[component], linestyle="none", marker=style.MARKERS[place], markersize=5,
-                      markerfacecolor="white", color=style.COLOURS[place])  # fmt: skip
+            axes.plot(marks["gamma"], marks[component], linestyle="none", marker=style.MARKERS[k], markersize=5,
+                      markerfacecolor="white", color=style.COLOURS[k])  # fmt: skip
         figure.legend(loc="outside lower center", ncols=4, columnspacing=1.2, handlelength=1.6)
     return figure

@@ -1,4 +1,4 @@
-"""Error of u against the particles per cell, log-log, a figure a method and a line a cell size.
+"""Error of u against the particles per cell, log-log, a figure for each method, a line for each cell size.
 
 Where the lines fall to the right, the sums over particles are the error; where they are flat, the grid is.
 """
@@ -43,7 +43,7 @@ def particles(record: Record, solution: str, quantity: str = "u", norm: str = "r
 
 
 def _apart(heights: list[float], least: float) -> list[float]:
-    """The heights, those closer than `least` moved up."""
+    """Heights, those closer than `least` moved up."""
     moved = list(heights)
     order = sorted(range(len(heights)), key=lambda i: heights[i])
     for below, above in pairwise(order):
@@ -52,14 +52,14 @@ def _apart(heights: list[float], least: float) -> list[float]:
 
 
 def _draw(panel: Axes, record: Record, found: list[ParticleAxis]) -> None:
-    """The lines of one method, the finest the darkest, each with its cell size at its end."""
+    """Draw the lines of one method, the finest the darkest, each with its cell size at its end."""
     look = style.look(methods(record), found[0].run.method, 9)
     counts = sorted({count for a in found for count in a.ppc})
     found = sorted(found, key=lambda a: a.run.cells)
     heights = _apart([log10(a.errors[-1]) for a in found], APART * float(np.ptp(np.log10(panel.get_ylim()))))
-    for place, (a, height) in enumerate(zip(found, heights, strict=True)):
-        share = 0.35 + 0.65 * (place + 1) / len(found)
-        colour = tuple(1 - share * (1 - part) for part in to_rgb(look.colour))
+    for number, (a, height) in enumerate(zip(found, heights, strict=True)):
+        depth = 0.35 + 0.65 * (number + 1) / len(found)
+        colour = tuple(1 - depth * (1 - part) for part in to_rgb(look.colour))
         panel.plot(a.ppc, a.errors, color=colour, marker=look.marker)
         panel.annotate(
             words.cell_size(a.run.cells), (a.ppc[-1], 10**height), (8, 0), textcoords="offset points",

@@ -1,6 +1,6 @@
-"""Scatter of the error of u as the particles lie elsewhere in their cells: smallest to largest of the replicates.
+"""Scatter of the error of u over the positions of the particles in their cells: smallest to largest replicate.
 
-Errors are over the middle one of their level, so that all levels share an axis.
+Errors are over the middle one of their level, so that all levels have one axis.
 """
 
 from matplotlib import rc_context
@@ -13,7 +13,7 @@ from mpm_verify.reports.figures import style
 from mpm_verify.reports.figures.convergence import methods
 from mpm_verify.reports.frames import Record
 
-WIDTH = 0.7  # of a cell size that its series share
+WIDTH = 0.7  # of the room of a cell size, for all series
 
 
 def position(record: Record, solution: str, quantity: str = "u", norm: str = "rms") -> Figure | None:
@@ -38,14 +38,14 @@ def position(record: Record, solution: str, quantity: str = "u", norm: str = "rm
 
 
 def _shifts(count: int) -> list[float]:
-    """Places beside each other."""
-    return [WIDTH * ((place + 0.5) / count - 0.5) for place in range(count)]
+    """Shifts of bars beside each other."""
+    return [WIDTH * ((number + 0.5) / count - 0.5) for number in range(count)]
 
 
-def _draw(panel: Axes, record: Record, axis: PositionAxis, places: list[float]) -> None:
-    """A bar from the smallest to the largest error, a marker at the usual place of the particles."""
+def _draw(panel: Axes, record: Record, axis: PositionAxis, at: list[float]) -> None:
+    """Draw a bar from the smallest to the largest error, a marker at the usual position of the particles."""
     look = style.look(methods(record), axis.run.method, axis.run.ppc)
     low, high = ([end[i] / end[1] for end in axis.ends] for i in (0, 2))
-    panel.vlines(places, low, high, color=look.colour, linestyle=look.line, linewidth=1.6)
+    panel.vlines(at, low, high, color=look.colour, linestyle=look.line, linewidth=1.6)
     usual = [errors[0] / end[1] for errors, end in zip(axis.errors, axis.ends, strict=True)]
-    panel.plot(places, usual, **{**look.plot, "linestyle": "none", "markersize": 6})
+    panel.plot(at, usual, **{**look.plot, "linestyle": "none", "markersize": 6})

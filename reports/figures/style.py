@@ -58,7 +58,7 @@ PANEL = (4.8, 5.0)  # inches: a panel shown alone
 
 @dataclass(frozen=True)
 class Look:
-    """How a series is drawn; `legend` and `plot` arguments for matplotlib."""
+    """Look of a series; `plot` has the arguments for matplotlib."""
 
     colour: str
     marker: str
@@ -79,14 +79,14 @@ class Look:
 
 
 def look(methods: Sequence[str], method: str, ppc: int) -> Look:
-    """The look of a series; `methods` are those of the study, in its order."""
-    place = list(methods).index(method)
+    """Look of a series; `methods` are those of the study, in its order."""
+    number = list(methods).index(method)
     line, filled = LINES.get(ppc, OTHER)
-    return Look(COLOURS[place % len(COLOURS)], MARKERS[place % len(MARKERS)], line, filled)
+    return Look(COLOURS[number % len(COLOURS)], MARKERS[number % len(MARKERS)], line, filled)
 
 
 def legend(figure: Figure, methods: Sequence[str], series: Sequence[tuple[str, int]], columns: int = 2) -> None:
-    """Below the panels, so that it never covers a point: each series, or, of many, each method and particle count."""
+    """Draw the legend below the panels, so that it covers no point: each series, or each method and particle count."""
     if len(series) <= SEVERAL:
         handles = [
             Line2D([], [], label=f"{words.method(m)}, {ppc} per cell", **look(methods, m, ppc).plot)
@@ -106,7 +106,7 @@ def legend(figure: Figure, methods: Sequence[str], series: Sequence[tuple[str, i
 
 
 def panel(size: tuple[float, float], **settings: Any) -> tuple[Figure, Axes]:
-    """A figure of one panel, in inches."""
+    """Figure of one panel, and its axes; size in inches."""
     figure = Figure(figsize=size, layout="constrained")
     axes = figure.subplots()
     axes.set(**settings)
@@ -114,7 +114,7 @@ def panel(size: tuple[float, float], **settings: Any) -> tuple[Figure, Axes]:
 
 
 def error_axis(axes: Axes) -> None:
-    """Ticks of a logarithmic axis of errors, also where it spans less than a decade."""
+    """Set the ticks of a logarithmic axis of errors, also where it spans less than a decade."""
     low, high = axes.get_ylim()
     parts = (1.0,) if high / low > 30 else (1.0, 2.0, 5.0) if high / low > 2 else tuple(np.arange(10, 100) / 10)
     axes.yaxis.set_major_locator(LogLocator(subs=parts, numticks=8))
@@ -123,7 +123,7 @@ def error_axis(axes: Axes) -> None:
 
 
 def number(value: float, _: object = None) -> str:
-    """A tick as in the tables: 2e-4, 2.5e-4, 0."""
+    """Text of a tick as in the tables: 2e-4, 2.5e-4, 0."""
     digits, exponent = f"{value:.3e}".split("e")
     return f"{digits.rstrip('0').rstrip('.')}e{int(exponent)}" if value else "0"
 

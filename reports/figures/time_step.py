@@ -28,7 +28,7 @@ def time_step(record: Record, solution: str, quantity: str = "u", norm: str = "r
 
 
 def _draw(figure: Figure, record: Record, found: list[TimeAxis]) -> None:
-    """The errors, large time steps on the right."""
+    """Draw the errors, large time steps on the right."""
     axes = figure.subplots()
     for a in found:
         axes.plot(a.courants, a.errors, **style.look(methods(record), a.run.method, a.run.ppc).plot)

@@ -1,4 +1,4 @@
-"""More parts of the column's page: solution verification, pictures and films, what keeps the column alive."""
+"""Parts of the column's page: solution verification, pictures and films, what keeps the column alive."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -22,11 +22,11 @@ SET_UP = (
 )
 
 
-def refinement(collapse: ColumnAnalysis, add: Add) -> Section:
-    """Richardson extrapolation where levels are refined, scatter where particles are shifted."""
+def refinement(analysis: ColumnAnalysis, add: Add) -> Section:
+    """Section with Richardson extrapolation where levels are refined, scatter where particles are shifted."""
     figures, rows = [], []
-    heads = ("axis", *(("runs with",) if any(one.shared for one in collapse.refined) else ()))
-    named = [(one.axis, words.listed(one.shared), one) for one in collapse.refined]
+    heads = ("axis", *(("runs with",) if any(one.shared for one in analysis.refined) else ()))
+    named = [(one.axis, words.listed(one.shared), one) for one in analysis.refined]
     for number, (axis, runs) in enumerate(dict.fromkeys((axis, runs) for axis, runs, _ in named)):
         series = [one for *of, one in named if tuple(of) == (axis, runs)]
         drawn = draw.refined(series, f"{AXES[axis]}, finer to the right")
@@ -42,12 +42,12 @@ def refinement(collapse: ColumnAnalysis, add: Add) -> Section:
     if rows:
         head = (*heads, "quantity", "coarse to fine [m]", "finest three", "order", "limit", "uncertainty [m]")
         tables.append(Table("Richardson extrapolation and grid convergence index", head, tuple(rows), texts=head[:5]))
-    if collapse.scattered:
+    if analysis.scattered:
         head = ("quantity", "runs with", "runs", "mean [m]", "standard deviation [mm]", "range [mm]", "of the mean")
-        tables.append(Table("Scatter over where the particles lie in their cells at first", head, tuple(
+        tables.append(Table("Scatter over the initial positions of the particles in their cells", head, tuple(
             (words.quantity(one.quantity), words.listed(one.shared) or DASH, str(one.count), f"{one.mean:.4f}",
              f"{1e3 * one.deviation:.1f}", f"{1e3 * one.reach:.1f}", percent(one.deviation / one.mean))
-            for one in collapse.scattered), texts=("runs with",)))  # fmt: skip
+            for one in analysis.scattered), texts=("runs with",)))  # fmt: skip
     text = (
         "There is no exact solution. Where three levels approach a limit from one side, the order is observed, the "
         "limit is extrapolated, with an order of 2 at most, and the uncertainty is the grid convergence index, 1.25 "
@@ -59,13 +59,13 @@ def refinement(collapse: ColumnAnalysis, add: Add) -> Section:
 
 
 def extrapolated(found: Any) -> tuple[str, ...]:
-    """Of the finest three levels, as text."""
+    """Extrapolation of the finest three levels, as text."""
     limits = (f"{found.order:.2f}", f"{found.limit:.4f}") if found.kind == "converges" else (DASH, DASH)
     return (found.kind, *limits, f"{found.uncertainty:.4f}")
 
 
 def set_up(store: Store, add: Add, run: ColumnRun, result: ColumnResult) -> Section:
-    """The paper's Figure 3."""
+    """Section of the set-up, the paper's Figure 3."""
     arrays = store.arrays(result.digest)
     x, corners = draw.away(run, arrays["snapshot_x"][0]), arrays.get("snapshot_corners")
     figure = draw.set_up(run, x, None if corners is None else draw.away(run, corners[0]))
@@ -74,31 +74,31 @@ def set_up(store: Store, add: Add, run: ColumnRun, result: ColumnResult) -> Sect
     )
 
 
-def films(collapse: ColumnAnalysis, store: Store, add: Add, ran: Sequence[tuple[ColumnRun, ColumnResult]]) -> Section:
-    """Snapshots of the last run, and animations of the first few."""
+def films(analysis: ColumnAnalysis, store: Store, add: Add, ran: Sequence[tuple[ColumnRun, ColumnResult]]) -> Section:
+    """Section of pictures: snapshots of the last run, and animations of the first few."""
     run, result = ran[-1]
     image = add("snapshots", draw.snapshots(run, store.arrays(result.digest)), "Layers of sand at a few times.")
-    label = words.label(collapse.study, run)
+    label = words.label(analysis.study, run)
     caption = f"{label}: the domains of the particles, in layers by the height at which they began."
     shown = ran[:FILMS]
     most, wide = min(EACH, MOST // len(shown)), 1.02 * max(one.values.get("front_999", run.width) for _, one in shown)
-    reels = [film(run, store.arrays(one.digest), words.label(collapse.study, run), wide, most) for run, one in shown]
+    reels = [film(run, store.arrays(one.digest), words.label(analysis.study, run), wide, most) for run, one in shown]
     return Section("pictures", "The collapse", figures=[(image, caption)], films=reels, wide=True)
 
 
-def alive(collapse: ColumnAnalysis) -> Section:
-    """What scaling, void strain and smoothing do to the runs, failed ones too."""
+def alive(analysis: ColumnAnalysis) -> Section:
+    """Section on what limits, void strain and smoothing do to the runs, failed ones too."""
     head = ("run", "limit [cells]", "limited domains", "with void strain", "without stress", "void strain", "det F",
             "crowding", "outside the cone", "worst t/(s sin φ)", "largest s / ρgh₀", "fastest particle [m/s]",
             "Courant number", "steps", "CPU [s]", "million updates a second")  # fmt: skip
     rows = []
-    for run in collapse.study.runs:
-        result = collapse.results.get(run.digest)
+    for run in analysis.study.runs:
+        result = analysis.results.get(run.digest)
         if result and result.values:
             v = result.values
             weight = float(result.parameters["rho0"]) * run.g * run.height
             rows.append((
-                words.label(collapse.study, run), f"{float(result.parameters['domain limit']):.3g}",
+                words.label(analysis.study, run), f"{float(result.parameters['domain limit']):.3g}",
                 percent(v["most_cut"]), percent(v["void"]), percent(v["idle"]), f"{v['void_strain']:.3g}",
                 f"{v['least_J']:.3g} to {v['most_largest_J']:.3g}", f"{v['crowding']:.2f}", percent(v["most_outside"]),
                 f"{1 + v['most_beyond']:.3g}", f"{v['most_largest_s'] / weight:.1f}", f"{v['most_fastest']:.2f}",

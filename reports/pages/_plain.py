@@ -1,4 +1,4 @@
-"""The page that every case has which draws none of its own: verdicts, errors and orders, a figure, checks, runs."""
+"""Page of a case that has none of its own: verdicts, errors and orders, a figure, checks, runs."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -54,7 +54,7 @@ def sections(record: Record, add: Add) -> list[Section]:
 
 
 def verdict_table(record: Record) -> Table:
-    """What is judged, what came out, and why."""
+    """Table of what is judged, what came out, and why."""
     head = ("refinement", "quantity", "verdict", "order", "interval", "expected", "reason")
     rows = []
     for f in record.findings:
@@ -67,7 +67,7 @@ def verdict_table(record: Record) -> Table:
 
 
 def levels(record: Record, found: Finding) -> Table:
-    """A row a cell size."""
+    """Table of the levels of a finding, a row for each cell size."""
     rows = [
         (str(row["cells"]), words.sci(row["error"]), words.order(row["order"]), str(row["ended"]))
         for row in plain.levels(record, found)
@@ -77,7 +77,7 @@ def levels(record: Record, found: Finding) -> Table:
 
 
 def runs(record: Record) -> Section:
-    """Every run: its parameters that vary, how it ended, what it took."""
+    """Section of every run: its parameters that vary, how it ended, what it took."""
     names = record.study.axes
     head = (*(name.replace("_", " ") for name in names), "status", "time steps", "particles", "wall time [s]", "failed")
     rows = []
@@ -92,7 +92,7 @@ def runs(record: Record) -> Section:
 
 
 def errors(record: Record, quantity: str, norm: str) -> Figure:
-    """Error of every refinement against cell size, both axes logarithmic."""
+    """Figure of the error of every refinement against cell size, both axes logarithmic."""
     methods = list(dict.fromkeys(getattr(s.first, "method", "") for s in record.series))
     with rc_context(style.RC):
         figure = Figure(figsize=style.PANEL, layout="constrained")
@@ -109,7 +109,7 @@ def errors(record: Record, quantity: str, norm: str) -> Figure:
 
 
 def _expected(axes: object, record: Record, quantity: str, norm: str) -> None:
-    """A line of the expected order below the finest errors."""
+    """Draw a line of the expected order below the finest errors."""
     for f in record.findings:
         e, done = f.plan.expectation, record.errors(record.series_of(f.plan), quantity, norm)
         if (f.plan.quantity, f.plan.norm) == (quantity, norm) and e and e.order is not None and len(done) > 1:

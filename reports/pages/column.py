@@ -1,4 +1,4 @@
-"""The page of a study of the column: runs, the paper's sentences, fronts and profiles, energies, refinement, films."""
+"""Page of a study of the column: runs, the paper's sentences, fronts and profiles, energies, refinement, films."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -21,60 +21,60 @@ from mpm_verify.reports.words import DASH, percent
 
 def page(record: Record, vtk: bool = False) -> Path:
     """Write the page of a study, its tables, and with `vtk` the files of its snapshots. Raises StoreError."""
-    collapse, store, folder = record.analysis.more, record.store, record.store.folder
-    made = render(folder, collapse.examination, lambda _, add: sections(collapse, store, add))
+    analysis, store, folder = record.analysis.more, record.store, record.store.folder
+    made = render(folder, analysis.examination, lambda _, add: sections(analysis, store, add))
     try:
-        tables(collapse, store, folder / "tables")
+        tables(analysis, store, folder / "tables")
         if vtk:
-            files(collapse, store, folder / "vtk")
+            files(analysis, store, folder / "vtk")
     except OSError as error:
         raise StoreError(f"cannot write into {folder}: {error.strerror}; the results are kept") from error
     return made
 
 
-def sections(collapse: ColumnAnalysis, store: Store, add: Add) -> Sequence[Section]:
-    """Its parts; figures only where a run came to its end."""
-    found = [summary(collapse, add)]
-    if collapse.claims:
-        found.append(said(collapse))
-    if drawn := [one for one in collapse.ran if one.curves]:
-        labels = [words.label(collapse.study, one.run) for one in drawn]
+def sections(analysis: ColumnAnalysis, store: Store, add: Add) -> Sequence[Section]:
+    """Sections; figures only where a run came to its end."""
+    found = [summary(analysis, add)]
+    if analysis.claims:
+        found.append(said(analysis))
+    if drawn := [one for one in analysis.ran if one.curves]:
+        labels = [words.label(analysis.study, one.run) for one in drawn]
         found += [motion(drawn, labels, add), energy(drawn, labels, add), budget(drawn, labels, add)]
-    if collapse.refined or collapse.scattered:
-        found.append(refinement(collapse, add))
+    if analysis.refined or analysis.scattered:
+        found.append(refinement(analysis, add))
     kept = [
-        (run, collapse.results[run.digest]) for run in collapse.study.runs
-        if run.digest in collapse.results and curves(store, collapse.results[run.digest])
+        (run, analysis.results[run.digest]) for run in analysis.study.runs
+        if run.digest in analysis.results and curves(store, analysis.results[run.digest])
     ]  # fmt: skip
     if kept:
-        found += [set_up(store, add, *kept[0]), films(collapse, store, add, kept)]
-    if collapse.results:
-        found.append(alive(collapse))
+        found += [set_up(store, add, *kept[0]), films(analysis, store, add, kept)]
+    if analysis.results:
+        found.append(alive(analysis))
     return [*found, Section("checks", "Invariants, whatever the experiment says", tables=[
-        checks_table("Checks", collapse.examination.checks, group=True)])]  # fmt: skip
+        checks_table("Checks", analysis.examination.checks, group=True)])]  # fmt: skip
 
 
-def summary(collapse: ColumnAnalysis, add: Add) -> Section:
-    """What each run came to."""
+def summary(analysis: ColumnAnalysis, add: Add) -> Section:
+    """Section of what each run came to."""
     head = ("run", "front 99 %", "99.9 %", "toe", "height", "rest [√(h₀/g)]", "height falls", "area", "outcome")
     rows = []
-    for run in collapse.study.runs:
-        result = collapse.results.get(run.digest)
-        rows.append((words.label(collapse.study, run), *numbers(run, result)))
+    for run in analysis.study.runs:
+        result = analysis.results.get(run.digest)
+        rows.append((words.label(analysis.study, run), *numbers(run, result)))
     notes = (
         "Front and toe are distances from the wall in m: 99 or 99.9 % of the mass lie within the front, and the heap "
-        "that hangs together with the wall ends at its toe. The height is that of the heap next to the wall; “height "
+        "that is connected to the wall ends at its toe. The height is that of the heap next to the wall; “height "
         "falls” is by how much it still fell in the last fifth of the time. A run rests once the kinetic energy that "
-        "the grid sees stays below a ten-thousandth of the potential energy there was; grains of the experiment came "
+        "the grid sees stays below a ten-thousandth of the initial potential energy; grains of the experiment came "
         "to rest after 2.5 to 3.3 √(h₀/g). Area: that below the surface over that of the column; as the surface is "
         "that of 99 % of the mass, by its centres, it is a little too low."
     )
-    return Section("runs", "Runs", [*collapse.study.words, notes], tables=[
-        Table("What the runs came to", head, tuple(rows), texts=("outcome",))])  # fmt: skip
+    return Section("runs", "Runs", [*analysis.study.words, notes], tables=[
+        Table("Results of the runs", head, tuple(rows), texts=("outcome",))])  # fmt: skip
 
 
 def numbers(run: ColumnRun, result: ColumnResult | None) -> tuple[str, ...]:
-    """Of one run, as text."""
+    """Numbers of one run, as text."""
     if result is None:
         return (*[DASH] * 7, "not run")
     if result.failure:
@@ -87,9 +87,9 @@ def numbers(run: ColumnRun, result: ColumnResult | None) -> tuple[str, ...]:
     return (*lengths, rest, percent(v["creep"]), f"{v['area']:.2f}", "finished")
 
 
-def said(collapse: ColumnAnalysis) -> Section:
-    """The paper's sentences."""
-    several = any(claim.shared for claim in collapse.claims)
+def said(analysis: ColumnAnalysis) -> Section:
+    """Section of the paper's sentences."""
+    several = any(claim.shared for claim in analysis.claims)
     head = ("the paper says", *(("runs with",) if several else ()), "here", "what was found")
     rows = tuple(
         (
@@ -98,14 +98,14 @@ def said(collapse: ColumnAnalysis) -> Section:
             words.answer(claim),
             words.found(claim),
         )
-        for claim in collapse.claims
+        for claim in analysis.claims
     )
     return Section("paper", "What the paper says, and what is found here", tables=[
         Table("Sentences of the paper on this axis", head, rows, texts=head[1:])])  # fmt: skip
 
 
 def motion(ran: Sequence[FinishedRun], labels: Sequence[str], add: Add) -> Section:
-    """Fronts and final profiles."""
+    """Section of fronts and final profiles."""
     return Section("motion", "Run-out", figures=[
         (add("front", draw.fronts(ran, labels), "Front against time; its final values are in the table of runs."),
          "Front against normalised time. Shaded: where the experiment's front rests; dashes: the times of that."),
@@ -115,7 +115,7 @@ def motion(ran: Sequence[FinishedRun], labels: Sequence[str], add: Add) -> Secti
 
 
 def budget(ran: Sequence[FinishedRun], labels: Sequence[str], add: Add) -> Section:
-    """All of the energy of the first run and of the last."""
+    """Section of the energy budgets of the first run and of the last."""
     figures = []
     for number, key in {0: "first", len(ran) - 1: "last"}.items():
         label = labels[number]
@@ -125,7 +125,7 @@ def budget(ran: Sequence[FinishedRun], labels: Sequence[str], add: Add) -> Secti
 
 
 def energy(ran: Sequence[FinishedRun], labels: Sequence[str], add: Add) -> Section:
-    """Energies of all."""
+    """Section of the energies of all runs."""
     figures = [
         (add(name, draw.energy(ran, labels, name), f"{name.capitalize()} energy of each run over time."),
          f"The paper's Figure 6: {name} energy.")
@@ -136,16 +136,16 @@ def energy(ran: Sequence[FinishedRun], labels: Sequence[str], add: Add) -> Secti
     rows = []
     for one, label in zip(ran, labels, strict=True):
         start, v = float(one.curves["potential"][0]), one.values
-        shares = [v[name] / start for name in ("potential", "kinetic", "on_grid", "elastic", "plastic", "damping")]
-        shares += [-v["walls"] / start, v["transfer"] / start, v["convection"] / start]
-        rows.append((label, *(f"{100 * share:.2f}" for share in shares), f"{v['unbalanced']:.1e}"))
+        parts = [v[name] / start for name in ("potential", "kinetic", "on_grid", "elastic", "plastic", "damping")]
+        parts += [-v["walls"] / start, v["transfer"] / start, v["convection"] / start]
+        rows.append((label, *(f"{100 * part:.2f}" for part in parts), f"{v['unbalanced']:.1e}"))
     text = (
         "Kinetic energy of the particles includes velocities that the grid does not see and that move nothing; at rest "
         "it is all that is left. Two columns are what the method loses: transfer, on the way of velocities between "
         "particles and grid, and convection, the work of the forces at the nodes less that of the stress in the "
         "particles. Each term is computed apart from the others; the residual is what their sum misses. Where the "
-        "gradients of weights jump, as those of classical MPM do, convection is no small fraction."
+        "gradients of weights jump, as those of classical MPM do, convection is not small."
     )
     return Section("energy", "Energy", [text], figures, [
-        Table("Energies at the end, % of the initial potential energy; residual: its largest fraction at any time",
+        Table("Energies at the end, % of the initial potential energy; residual: largest at any time",
               ("run", *columns), tuple(rows))])  # fmt: skip

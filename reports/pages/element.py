@@ -1,4 +1,4 @@
-"""The page of `verify material`: each element test with its curves, then the errors, then the material's own checks."""
+"""Page of `verify material`: each element test with its curves, then the errors, then the material's own checks."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -22,7 +22,7 @@ def page(record: Record, vtk: bool = False) -> Path:
 
 
 def sections(examination: Examination, add: Add) -> Sequence[Section]:
-    """A section a test, one for the errors, one for what is known of the material."""
+    """Sections: one for each test, one for the errors, one for what is known of the material."""
     names = [name.partition("/")[2] for name in examination.curves if name.startswith("errors/")]
     noted = dict.fromkeys(finding.group for finding in examination.findings if finding.group)
     titles = dict(zip(names, noted, strict=True))
@@ -42,7 +42,7 @@ def sections(examination: Examination, add: Add) -> Sequence[Section]:
 
 
 def test(examination: Examination, name: str, title: str, add: Add) -> Section:
-    """Stress path, stress and volume against strain, with the closed form below where there is one."""
+    """Section of a test: stress path, stress and volume against strain, over the closed form where there is one."""
     curves = examination.curves
     checks = [check for check in examination.checks if check.group == title]
     tables, words = [checks_table("Checks", checks)] if checks else [], [" ".join(notes(examination, title))]
@@ -72,7 +72,7 @@ def test(examination: Examination, name: str, title: str, add: Add) -> Section:
 
 
 def steps(examination: Examination, titles: dict[str, str], add: Add) -> Section:
-    """Errors and orders in the strain step."""
+    """Section of errors and orders in the strain step."""
     errors = {name: examination.curves[f"errors/{name}"] for name in titles}
     rows = tuple(
         (titles[name], *map(sci, map(float, curve["error"])), order(float(curve["order"][0])))

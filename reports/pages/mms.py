@@ -1,4 +1,4 @@
-"""A study folder -> report.html, figures/ and tables/; from what is stored alone, and the same bytes each time."""
+"""Page, figures and tables of an MMS study; from what is stored alone, and the same bytes each time."""
 
 import re
 from pathlib import Path
@@ -22,20 +22,22 @@ from mpm_verify.reports.figures.particles import particles
 from mpm_verify.reports.figures.position import position
 from mpm_verify.reports.figures.time_step import time_step
 from mpm_verify.reports.frames import Record
-from mpm_verify.reports.tables import study as tables
+from mpm_verify.reports.tables import mms as tables
 from mpm_verify.reports.tables.cost import compares
 from mpm_verify.solver.plugins import label
 
 TIME = "Error of u in rms against the Courant number on the finest cells, both axes logarithmic; numbers in the table."
-PLACE = "Error of u in rms over the median of its level, with the particles at several places; numbers in the tables."
+POSITION = (
+    "Error of u in rms over the median of its level, for several positions of the particles; numbers in the tables."
+)
 COUNT = "error of u in rms against the particles per cell, a line a cell size; numbers in the table."
 
 
 def page(record: Record, vtk: bool = False, field: tuple[int, int] = (CELLS, PPC)) -> Path:
     """Write report.html, figures/*.svg|pdf|png and tables/*.csv into the folder of a study; the path of the page.
 
-    The error field is that of the run of each method nearest to `field`: cells a side and particles per cell. Of this
-    case there are no snapshots, whatever `vtk` says.
+    The error field is that of the run of each method nearest to `field`: cells a side and particles per cell. This
+    case has no snapshots, whatever `vtk` says.
 
     Raises StoreError if the folder cannot be written.
     """
@@ -57,7 +59,7 @@ def page(record: Record, vtk: bool = False, field: tuple[int, int] = (CELLS, PPC
 
 
 def _page(record: Record, folder: Path, field: tuple[int, int]) -> str:
-    """The HTML text; figures are drawn on the way."""
+    """Text of the page; figures are drawn on the way."""
     return template("report.html.j2").render(
         record=record,
         study=record.study,
@@ -89,7 +91,7 @@ def _solution(record: Record, solution: str, folder: Path, field: tuple[int, int
     several = particles(record, solution)
     images = {
         "time": _maybe(add, "time_step", time_step(record, solution), TIME),
-        "position": _maybe(add, "position", position(record, solution), PLACE),
+        "position": _maybe(add, "position", position(record, solution), POSITION),
         "particles": [
             add(f"particles_{label(m)}", drawn, f"{words.method(m)}: {COUNT}") for m, drawn in several.items()
         ],
@@ -115,20 +117,20 @@ def _solution(record: Record, solution: str, folder: Path, field: tuple[int, int
 
 
 def _cost(record: Record, folder: Path) -> Image | None:
-    """Error against cost, where there are methods enough to compare."""
+    """Figure of error against cost, where there are methods enough to compare."""
     if not compares(record):
         return None
     drawn = cost_figure(record, figure_rows(record))
-    return adder(folder, "")("cost", drawn, "Error of u, as a share of the exact rms, against updates and time.")
+    return adder(folder, "")("cost", drawn, "Error of u over the exact rms, against updates and time.")
 
 
 def _maybe(add: Add, name: str, figure: Figure | None, alt: str) -> Image | None:
-    """An Image where there is a figure."""
+    """Image where there is a figure."""
     return add(name, figure, alt) if figure else None
 
 
 def _field(record: Record, run: Run, add: Add) -> Image | None:
-    """The error field of one run; None where its particles are not stored, or cannot be read."""
+    """Figure of the error field of one run; None where its particles are not stored, or cannot be read."""
     try:
         arrays = record.arrays(run)
     except StoreError:
@@ -142,13 +144,13 @@ def _field(record: Record, run: Run, add: Add) -> Image | None:
 
 
 def _alt(record: Record, solution: str, norm: str) -> str:
-    """A panel of Figure 1 in words: the ends of each series and its failed runs."""
+    """Text of a panel of Figure 1: the ends of each series and its failed runs."""
     parts = [f"Error of u in {norm} against cell size, both axes logarithmic."]
     for s in (s for s in record.drawn if s.first.solution == solution):
-        found, lost = record.errors(s, "u", norm), record.failed(s)
+        found, failed = record.errors(s, "u", norm), record.failed(s)
         ends = [f"{words.sci(e)} at {words.cell_size(run.cells)}" for run, e in (found[:1] + found[1:][-1:])]
         text = f"{words.series(s.first)}: {' to '.join(ends) or 'no error'}"
-        parts.append(text + (f", {words.count(len(lost), 'run')} failed." if lost else "."))
+        parts.append(text + (f", {words.count(len(failed), 'run')} failed." if failed else "."))
     return " ".join(parts)
 
 

@@ -1,4 +1,4 @@
-"""The page of `verify objectivity`: Figure 2, what it can and cannot show, orders, and rates in simple shear."""
+"""Page of `verify objectivity`: Figure 2, what it can and cannot show, orders, and rates in simple shear."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -18,7 +18,7 @@ from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences.remarks import notes
 from mpm_verify.reports.words import sci
 
-MISREAD = (
+FAILING = (
     "Shear stress along the motion of Figure 2 by each negative control, kinematic, 200 steps; the broad line is "
     "right, and crosses are the controls that this figure cannot tell from it."
 )
@@ -31,13 +31,13 @@ def page(record: Record, vtk: bool = False) -> Path:
 
 
 def sections(examination: Examination, add: Add) -> Sequence[Section]:
-    """Its parts, each with the figures that its curves are there for."""
-    parts = [part(examination, add) for part in (figure2, inertia, misread, orders, rates)]
+    """Sections, each with the figures that its curves are there for."""
+    parts = [part(examination, add) for part in (figure2, inertia, controls, orders, rates)]
     return [part for part in parts if part.text or part.figures or part.tables]
 
 
 def of(curves: Curves, start: str) -> Curves:
-    """The curves whose names begin with `start/`, without it."""
+    """Curves whose names begin with `start/`, without it."""
     return {name[len(start) + 1 :]: curve for name, curve in curves.items() if name.startswith(start + "/")}
 
 
@@ -46,7 +46,7 @@ def _checks(examination: Examination, group: str) -> Table:
 
 
 def figure2(examination: Examination, add: Add) -> Section:
-    """The stresses of the turned block."""
+    """Section of the stresses of the turned block."""
     curves, runs = examination.curves, of(examination.curves, "run")
     exact = curves["exact"]
     images = [
@@ -62,7 +62,7 @@ def figure2(examination: Examination, add: Add) -> Section:
 
 
 def inertia(examination: Examination, add: Add) -> Section:
-    """What is inertia and what is not."""
+    """Section on what is inertia and what is not."""
     curves = of(examination.curves, "run")
     runs = {name: curves[name] for name in (PRINTED, REST, SMALL) if name in curves}
     images = []
@@ -73,34 +73,34 @@ def inertia(examination: Examination, add: Add) -> Section:
              "Shear stress in the frame of the box: the mean over the block, and the largest of any particle."),
             (add("inertia", away, "Co-rotated vertical stress less its static value over time, three runs."),
              "What the block's mean vertical stress has beyond its static value. The run that is not turned feels the "
-             "inertial forces of the turning one, in a box at rest."),
+             "inertial forces of the turning box, in a box at rest."),
         ]  # fmt: skip
     heading = "What the turning box feels: co-rotated stresses and inertia"
     return Section("inertia", heading, notes(examination, INERTIA), images)
 
 
-def misread(examination: Examination, add: Add) -> Section:
-    """The negative controls on the same figure."""
+def controls(examination: Examination, add: Add) -> Section:
+    """Section of the negative controls on the same figure."""
     curves = examination.curves
     found, images = of(curves, "figure2"), []
     if found:
-        image = add("misread", draw.misread(curves["exact"], found),
+        image = add("controls", draw.controls(curves["exact"], found),
                     "Shear stress of the turned block by each negative control.")  # fmt: skip
-        images = [(image, MISREAD)]
+        images = [(image, FAILING)]
     rows = tuple(
         (name.replace("_", " "), *(sci(float(curve[key][0])) for key in ("kinematic", "run", "stretched")))
         for name, curve in of(curves, "control").items()
     )
     head = ("negative control", "Figure 2, kinematic", "Figure 2, the CPDI run", "stretched turn, 400 steps")
     return Section(
-        "misread", "Negative controls", notes(examination, CONTROLS),
+        "controls", "Negative controls", notes(examination, CONTROLS),
         images, [Table(MISSES, head, rows),
                  _checks(examination, CONTROLS)],
     )  # fmt: skip
 
 
 def orders(examination: Examination, add: Add) -> Section:
-    """Errors against the step."""
+    """Section of errors against the step."""
     errors = of(examination.curves, "errors")
     heading, known = "Orders in time: a turn with strain", _checks(examination, ORDERS)
     if not errors:
@@ -117,7 +117,7 @@ def orders(examination: Examination, add: Add) -> Section:
 
 
 def rates(examination: Examination, add: Add) -> Section:
-    """The rates told apart."""
+    """Section of the rates in simple shear."""
     exact, computed = of(examination.curves, "shear"), of(examination.curves, "computed")
     images = [
         (add(f"shear_{key}", draw.shear(exact, computed, key), f"Component {key} of the stress in simple shear."), text)

@@ -1,1 +1,1 @@
-"""Sentences: what codes and numbers of the floors below come to in words; no outcome depends on any of them."""
+"""Sentences for codes and numbers of the floors below; no outcome depends on any of them."""

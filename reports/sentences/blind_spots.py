@@ -10,7 +10,7 @@ Words = Callable[[Numbers], str]
 
 
 def sentence(spot: BlindSpot) -> str:
-    """The sentence that applies; of what is blind, with the solutions of the library that see it."""
+    """Sentence on a blind spot or on what is seen; of a blind spot, with the solutions of the library that see it."""
     if not spot.blind:
         return SEEN[spot.code](spot.numbers)
     seen_by = f" Seen by {', '.join(SEEN_BY[spot.code])}." if spot.code in SEEN_BY else ""
@@ -18,48 +18,46 @@ def sentence(spot: BlindSpot) -> str:
 
 
 def unseen(spot: BlindSpot) -> str:
-    """What a study is blind to, in one sentence."""
+    """Sentence on what a study is blind to."""
     return BLIND[spot.code](spot.numbers)
 
 
 def no_shear(n: Numbers) -> str:
-    """F is diagonal, or all but diagonal."""
+    """Sentence on F that is diagonal, or all but diagonal."""
     how = "F is diagonal everywhere" if n["shear"] == 0 else f"F is all but diagonal (within {figure(n['shear'])})"
     return f"{how}: there is no shear, so a dropped shear stress and a wrong shear sign are invisible."
 
 
 def no_rotation(n: Numbers) -> str:
-    """R is I, or all but I."""
+    """Sentence on R that is I, or all but I."""
     still = n["rotation_deg"] < ROUND
     how = "Nothing turns" if still else f"The material turns by {figure(n['rotation_deg'])}° at most"
     return (
-        f"{how}, F is its own transpose: domain vectors moved by Fᵀ, FᵀF in place of F Fᵀ, a wrong polar "
+        f"{how}, F is its own transpose: domain vectors moved by Fᵀ, FᵀF instead of F Fᵀ, a wrong polar "
         "decomposition or stress rate are invisible, and so is the error of domains that stretch but do not turn."
     )
 
 
 def rotation(n: Numbers) -> str:
-    """How far the material turns."""
+    """Sentence on how far the material turns."""
     weakly = ", so rotation is tested, though weakly" if n["rotation_deg"] < CLEAR else ", so rotation is tested"
     return f"The material turns by up to {figure(n['rotation_deg'])}°{weakly}."
 
 
 def no_volume(n: Numbers) -> str:
-    """det F is 1, or all but 1."""
+    """Sentence on det F that is 1, or all but 1."""
     change = max(1 - n["J_min"], n["J_max"] - 1)
     how = "det F is 1 everywhere" if change < ROUND else f"det F differs from 1 by {figure(change)} at most"
-    return (
-        f"{how}, so a wrong volumetric response (lambda drops out), a missing 1/J and V0 in place of V are invisible."
-    )
+    return f"{how}, so a wrong volumetric response (lambda drops out), a missing 1/J and V0 instead of V are invisible."
 
 
 def begins(part: float, what: str) -> str:
-    """`without velocity`, `with 1 % of the largest velocity`."""
+    """Phrase such as `without velocity` or `with 1 % of the largest velocity`."""
     return f"without {what}" if part < ROUND else f"with {percent(part)} of the largest {what}"
 
 
 def amplitude(n: Numbers) -> str:
-    """Sizes of strain and stress."""
+    """Phrase on the sizes of strain and stress."""
     return (
         f"Components of F {MINUS} I reach {figure(n['strain'])}, stresses {percent(n['stress'])} of rho0 c² "
         "(c the compression wave)"
@@ -67,7 +65,7 @@ def amplitude(n: Numbers) -> str:
 
 
 def no_walls(n: Numbers) -> str:
-    """What the boundary does in place of particles that slide along it."""
+    """Sentence on what the boundary does instead of letting particles slide along it."""
     moves, pulls = n["edge_motion"] > ROUND, n["edge_traction"] > ROUND
     if n["edge_free"] and pulls:
         return (
@@ -84,7 +82,7 @@ def no_walls(n: Numbers) -> str:
 
 
 def no_plane(n: Numbers) -> str:
-    """Which component is missing."""
+    """Sentence on the component that is missing."""
     still = "one component of u" if n["weaker_component"] <= FAINT else "one component of the gradient"
     return f"The problem is one-dimensional: {still} is all but zero, so half of the code is not tested."
 
@@ -93,7 +91,7 @@ BLIND: dict[SpotCode, Words] = {
     SpotCode.SHEAR: no_shear,
     SpotCode.ROTATION: no_rotation,
     SpotCode.ORDER: lambda n: (
-        "F and the velocity gradient L commute, so F (I + dt L) in place of (I + dt L) F is invisible."
+        "F and the velocity gradient L commute, so F (I + dt L) instead of (I + dt L) F is invisible."
     ),
     SpotCode.SPIN: lambda n: "The velocity gradient L is symmetric, so L transposed is invisible.",
     SpotCode.VOLUME: no_volume,

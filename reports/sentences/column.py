@@ -25,7 +25,7 @@ ANSWERS = {True: "reproduced", False: "not reproduced", None: "cannot be told"}
 
 
 def value(axis: str, of: Any) -> str:
-    """A value of an axis: `14 cells wide`, `no damping`."""
+    """Value of an axis: `14 cells wide`, `no damping`."""
     if (axis, of) in NOTHING:
         return NOTHING[axis, of]
     if isinstance(of, bool):
@@ -45,17 +45,17 @@ def listed(values: Mapping[str, Any]) -> str:
 
 
 def label(study: ColumnStudy, run: ColumnRun) -> str:
-    """A run by what the study varies; by its method, mesh and material where it varies nothing."""
+    """Name of a run by what the study varies; by its method, mesh and material where it varies nothing."""
     return listed({axis: getattr(run, axis) for axis in study.axes or ("method", "cells", "ppc", "material")})
 
 
 def quantity(key: str) -> str:
-    """A length that is refined."""
+    """Name of a length that is refined."""
     return QUANTITIES[key]
 
 
 def answer(claim: Claim) -> str:
-    """Whether it is reproduced."""
+    """Answer: reproduced, not reproduced, or cannot be told."""
     return ANSWERS[claim.reproduced]
 
 
@@ -63,38 +63,38 @@ def answer(claim: Claim) -> str:
 
 
 def says(claim: Claim) -> str:
-    """The sentence of the paper."""
+    """Sentence of the paper."""
     return SAYS[claim.code]
 
 
 def found(claim: Claim) -> str:
-    """What the runs came to."""
+    """Sentence on what the runs came to."""
     return FOUND[claim.code](claim)
 
 
 def band(limits: Band) -> str:
-    """In m."""
+    """Band in m."""
     return f"{limits[0]:.3f} to {limits[1]:.3f} m"
 
 
 def off(length: float, limits: Band) -> str:
-    """`28 % below the band`."""
+    """Distance from a band, such as `28 % below the band`."""
     away = beyond(length, limits)
     return "in the band" if not away else f"{100 * abs(away):.0f} % {'above' if away > 0 else 'below'} the band"
 
 
 def fronts(claim: Claim) -> str:
-    """`0.902 m with 1 per cell, ...`."""
+    """Fronts, such as `0.902 m with 1 per cell, ...`."""
     return each(claim, lambda one: one.front)
 
 
 def heights(claim: Claim) -> str:
-    """`0.080 m with 1 per cell, ...`."""
+    """Heights, such as `0.080 m with 1 per cell, ...`."""
     return each(claim, lambda one: one.height)
 
 
 def each(claim: Claim, length: Callable[[Compared], float]) -> str:
-    """A length of each run, with what the run has on the axis."""
+    """Length of each run, with what the run has on the axis."""
     return ", ".join(f"{length(one):.3f} m with {value(claim.axis, one.value)}" for one in claim.runs)
 
 
@@ -103,7 +103,7 @@ def front_over(claim: Claim) -> str:
     text = f"The front comes to {fronts(claim)}; the experiment's band is {band(claim.known.front)}."
     crowded = [one for one in claim.runs if one.crowding > claim.numbers["crowded"]]
     named = " and ".join(f"{one.crowding:.2f} times with {value(claim.axis, one.value)}" for one in crowded)
-    weak = f" But of the space they are in particles keep {named} as their volume: those runs are weak evidence."
+    weak = f" But particles keep {named} the volume of the space that they fill: those runs are weak evidence."
     return text + (weak if crowded else "")
 
 
@@ -164,7 +164,7 @@ def materials_close(claim: Claim) -> str:
 
 
 def sand_stiffer(claim: Claim) -> str:
-    """How much less far it comes."""
+    """Distance by which UBCSAND comes less far, or further."""
     sand, plain = claim.runs
     return (
         f"The front of UBCSAND comes {1000 * abs(sand.front - plain.front):.0f} mm "
@@ -181,7 +181,7 @@ def both_near(claim: Claim) -> str:
 
 
 def sand_late(claim: Claim) -> str:
-    """How far the fronts are apart, early and at the end."""
+    """Distance of the fronts, early and at the end."""
     n = claim.numbers
     return (
         f"The two fronts differ by up to {1000 * n['early']:.0f} mm until {n['until']:g} s, and by "
@@ -242,13 +242,13 @@ FOUND: dict[ClaimCode, Callable[[Claim], str]] = {
 
 
 def claims(n: Mapping[str, Any]) -> str:
-    """How many sentences are reproduced."""
+    """Number of sentences that are reproduced."""
     untold = f", {n['open']:g} cannot be told" if n["open"] else ""
     return f"Sentences of the paper: {n['reproduced']:g} reproduced, {n['not_reproduced']:g} not{untold}."
 
 
 def unread_curves(n: Mapping[str, Any]) -> str:
-    """Which figures and sentences there are not."""
+    """Sentence on the figures and sentences that are left out."""
     return f"{unread(n)} So are sentences of the paper that are about curves."
 
 
@@ -267,7 +267,7 @@ REMARKS: dict[str, Callable[[Mapping[str, Any]], str]] = {
     ),
     ColumnRemark.UNREAD: unread_curves,
     ColumnRemark.BANDS: lambda n: (
-        "The band of the experiment lies between two forms in which texts quote its scaling law, that of the height "
-        "between two experiments; they are no error bars. No curve of the experiment is shown, because none is at hand."
+        "The band of the experiment lies between two forms in which texts quote its scaling, that of the height "
+        "between two experiments; they are not error bars. No curve of the experiment is shown, as none is at hand."
     ),
 }

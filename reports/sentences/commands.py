@@ -1,4 +1,4 @@
-"""What to type for the run that would decide: the command of the study with one option changed."""
+"""Commands to type for the run that would decide: the command of the study with one option changed."""
 
 import os
 import shlex
@@ -15,12 +15,12 @@ from mpm_verify.solver.plugins import is_file, split
 
 
 def reason(study: Study[Any], found: Finding) -> str:
-    """What decided, and the option that asks for the run that would decide where nothing does."""
+    """Reason of a verdict, and the option that asks for the run that would decide where nothing does."""
     return verdicts.reason(found.verdict.reason, courants(study, found.plan))
 
 
 def command(study: Study[Any], found: Finding) -> str:
-    """The whole command of the study that would decide; empty where no run would, or none can be asked for."""
+    """Command of the study that would decide; empty where no run would, or none can be asked for."""
     r = found.verdict.reason
     if r.wanted is None:
         return ""
@@ -33,12 +33,12 @@ def command(study: Study[Any], found: Finding) -> str:
 
 
 def courants(study: Study[Any], plan: QuantityPlan[Any]) -> tuple[float, ...]:
-    """Courant numbers of the runs of a declared quantity, the largest first."""
+    """Courant numbers of the runs of a planned quantity, the largest first."""
     return tuple(sorted({run.courant for run in study.runs if head(run) == plan.head}, reverse=True))
 
 
 def typed(study: Study[Any], plan: QuantityPlan[Any], wanted: Wanted) -> list[str]:
-    """The words of the study's command, or of one of its case that has the series where another made the study."""
+    """Words of the study's command, or of one of its case that has the series where another made the study."""
     words = shlex.split(study.command)
     if words[:2] == ["verify", study.case]:
         return [relative(word) for word in words]
@@ -51,7 +51,7 @@ def typed(study: Study[Any], plan: QuantityPlan[Any], wanted: Wanted) -> list[st
 
 
 def replaced(words: Sequence[str], option: str, value: str) -> list[str]:
-    """The words with the option at their end, and nowhere else."""
+    """Words with the option at their end, and nowhere else."""
     kept: list[str] = []
     for before, word in zip(["", *words], words, strict=False):
         if option not in (before, word) and not word.startswith(f"{option}="):
@@ -60,7 +60,7 @@ def replaced(words: Sequence[str], option: str, value: str) -> list[str]:
 
 
 def relative(word: str) -> str:
-    """A solution by its path as it is typed in this folder; any other word as it is."""
+    """Word of a command: a solution by its path as it is typed in this folder; any other word as it is."""
     option, equals, specification = word.partition("=") if word.startswith("--solution=") else ("", "", word)
     if not (is_file(specification) and os.path.isabs(specification)):
         return word

@@ -13,12 +13,12 @@ Numbers = Mapping[str, Any]
 
 
 def count(n: Numbers) -> str:
-    """`8 element tests`."""
+    """Count such as `8 element tests`."""
     return f"{n['tests']:g} element test{'s' * (n['tests'] != 1)}"
 
 
 def tests(n: Numbers) -> str:
-    """How many tests and checks, and how many missed."""
+    """Number of tests and checks, and how many missed."""
     missed = f"{n['missed']:g} did not pass" if n["missed"] else "all pass"
     checks = f"{n['checks']:g} check{'s' * (n['checks'] != 1)}: {missed}."
     return f"{count(n)}, {checks}" if n["tests"] else checks
@@ -31,7 +31,7 @@ def orders(n: Numbers) -> str:
 
 
 def failed(n: Numbers) -> str:
-    """Why and where a test ends early."""
+    """Sentence on why and where a test ends early."""
     why = {
         ElementFailure.NOT_FINITE: "a stress is not finite",
         ElementFailure.NO_STRAIN: f"no strain leads to what is asked, {n['left']:.1e} of the stress is left",
@@ -40,7 +40,7 @@ def failed(n: Numbers) -> str:
 
 
 def outside(n: Numbers) -> str:
-    """In which part of the steps zz is another principal stress than the middle one."""
+    """Sentence on the fraction of the steps in which zz is another principal stress than the middle one."""
     return (
         f"zz is outside the range of the principal stresses in the plane in {100 * n['fraction']:.3g} % of the steps: "
         "there the largest shear is on other planes, which this material does not look at."
@@ -53,7 +53,7 @@ REMARKS: dict[str, Words] = {
     Code.EXACT: lambda n: f"{n['tests']:g} {'is' if n['tests'] == 1 else 'are'} exact in any number of steps.",
     Code.ORDERS: orders,
     Code.FIRST_ORDER: lambda n: (
-        "First order is expected of this material: it returns along the stress at the end of a step, and costs an "
+        "First order is expected of this material: it returns along the stress at the end of a step, and loses an "
         "order where the direction of the stress turns."
     ),
     Code.RATE_IDLE: lambda n: (
@@ -67,8 +67,8 @@ REMARKS: dict[str, Words] = {
     Code.PATH_UNUSED: lambda n: f"Not used of {n['file']}: {n['columns']}.",
     Code.UNREAD: unread,
     Code.FAILED: failed,
-    Code.AGAINST: lambda n: f"Errors are against: {n['source']}.",
-    Code.AGAINST_OWN: lambda n: f"Errors are against: its own curve with {n['times']:g} times the steps.",
+    Code.AGAINST: lambda n: f"The errors are against the exact curve: {n['source']}.",
+    Code.AGAINST_OWN: lambda n: f"The errors are against its own curve with {n['times']:g} times the steps.",
     Code.ROUND_OFF: lambda n: (
         "The error is round-off at any number of steps: each step is exact here, and there is no order."
     ),
@@ -76,7 +76,7 @@ REMARKS: dict[str, Words] = {
     Code.ORDER: lambda n: f"The order is {n['order']:.2f}.",
     Code.ZZ_WITHIN: lambda n: "zz is within the range of the principal stresses in the plane in all steps.",
     Code.ZZ_OUTSIDE: outside,
-    Code.UNDEFORMED: lambda n: "a material of F starts undeformed",
+    Code.UNDEFORMED: lambda n: "a material with a stress from F starts undeformed",
     Code.OR_MORE: lambda n: "or a few more",
     Code.NO_EFFECT: lambda n: "no effect",
     Code.NO_EFFECT_PRIMARY: lambda n: "no effect in primary loading",
@@ -85,6 +85,6 @@ REMARKS: dict[str, Words] = {
         f"not in the paper's Table 2; the default is the correlation 1.1 N^-0.15 at N = {Ubcsand.N:g}"
     ),
     Code.OUR_READING: lambda n: (
-        "1 is our reading of the cyclic model, whose rules are not public; 0 is primary loading alone"
+        "1 is how we read the cyclic model, whose rules are not public; 0 is primary loading alone"
     ),
 }  # fmt: skip

@@ -4,7 +4,7 @@ from mpm_verify.solver.failure import Failure, FailureKind
 
 CAUSES = {
     FailureKind.INVERTED: "det F ≤ 0",
-    FailureKind.DOMAIN_INVERTED: "the particle's domain is turned inside out",
+    FailureKind.DOMAIN_INVERTED: "the particle's domain is inverted",
     FailureKind.OUTSIDE_GRID: "the particle or a part of its domain left the grid",
     FailureKind.DOMAIN_TOO_WIDE: "the particle's domain is too wide for its method",
     FailureKind.NO_WIDTH: "the particle's domain has no width",
@@ -22,12 +22,12 @@ WIDTHS = {1.0: "a cell", 2.0: "two cells"}
 
 
 def kind(kind: FailureKind) -> str:
-    """A kind of failure: `det F ≤ 0`."""
+    """Kind of failure in words: `det F ≤ 0`."""
     return CAUSES[kind]
 
 
 def cause(failure: Failure) -> str:
-    """The kind with its numbers: `dt = 0.5 is above the stability limit 0.2`."""
+    """Kind with its numbers: `dt = 0.5 is above the stability limit 0.2`."""
     n = failure.numbers
     if failure.kind is FailureKind.UNSTABLE_STEP and n:
         return f"dt = {n['dt']:.3g} is above the stability limit {n['limit']:.3g}"
@@ -40,7 +40,7 @@ def cause(failure: Failure) -> str:
 
 
 def failure(failure: Failure) -> str:
-    """The cause, then step, particle and cell: `det F ≤ 0 at step 21, particle 35 in cell (2, 2)`."""
+    """Cause, then step, particle and cell: `det F ≤ 0 at step 21, particle 35 in cell (2, 2)`."""
     when = f" at step {failure.step}" if failure.step >= 0 else ""
     where = f", particle {failure.particle}" if failure.particle >= 0 else ""
     where += f" in cell {failure.cell}" if failure.cell else ""
@@ -48,15 +48,15 @@ def failure(failure: Failure) -> str:
 
 
 def advice(failure: Failure) -> str:
-    """What to type to have such a run of `verify mms` all the same; empty where nothing helps."""
+    """Advice on what to type to have such a run of `verify mms` all the same; empty where nothing helps."""
     return " (--force runs it all the same)" if failure.kind is FailureKind.UNSTABLE_STEP else ""
 
 
 def replicate(number: int) -> str:
-    """Which of the runs of a level; nothing for the one at the usual positions."""
+    """Number of the run of a level; empty for the one at the usual positions."""
     return f", replicate {number + 1}" if number else ""
 
 
 def check(name: str, failure: Failure | None) -> str:
-    """The name of a check, with what ended the run that it has no number of."""
+    """Name of a check, with what ended the run that was to give its number."""
     return f"{name}: {cause(failure)} at step {failure.step}" if failure else name

@@ -11,7 +11,7 @@ Numbers = Mapping[str, Any]
 
 
 def turns(n: Numbers) -> str:
-    """All checks pass."""
+    """Sentence for a study whose checks all pass."""
     return (
         "The stress of the block turns with it: horizontal and vertical stress swap, and the shear stress in the axes "
         f"of the laboratory reaches {n['peak']:.3f} of the vertical stress at 45 degrees, where the closed form has "
@@ -21,7 +21,7 @@ def turns(n: Numbers) -> str:
 
 
 def swap(n: Numbers) -> str:
-    """What Figure 2 is, and the largest shear stress."""
+    """Paragraph on what Figure 2 is, and the largest shear stress."""
     return (
         "Gravity grows for one second and the block is compressed between rollers; then box, block and gravity turn by "
         "90 degrees in another. The closed form is the stress at the end of the ramp turned with the block: horizontal "
@@ -33,7 +33,7 @@ def swap(n: Numbers) -> str:
 
 
 def co_rotated(n: Numbers) -> str:
-    """Where the paper's sentence on shear stresses holds."""
+    """Paragraph on where the paper's sentence on shear stresses holds."""
     return (
         "The paper says that the small shear stresses which are generated quickly dissipate. That holds for the "
         "co-rotated components, the stress as the turning block sees it: the mean shear stress of the printed block "
@@ -44,11 +44,11 @@ def co_rotated(n: Numbers) -> str:
 
 
 def inertia(n: Numbers) -> str:
-    """What is inertia, and what is the grid's."""
+    """Paragraph on what is inertia, and what is the grid's."""
     return (
         f"A turn of 90 degrees in a second is not slow for a block of {n['L']:g} m: ω² L / g is {n['fraction']:.2g}. "
         f"On average over the turn the mean vertical stress misses its static value by {percent(n['printed'])}; the "
-        "same box at rest, with the centrifugal and Coriolis forces of the turning one, misses it by "
+        "same box at rest, with the centrifugal and Coriolis forces of the turning box, misses it by "
         f"{percent(n['rest'])}. So the miss is inertia, and not a rotation gone wrong. A block of a hundredth of the "
         f"size, whose inertial fraction is {percent(n['small_fraction'])}, misses by {percent(abs(n['small']))}, which "
         "is the grid's."
@@ -56,7 +56,7 @@ def inertia(n: Numbers) -> str:
 
 
 def ripple(n: Numbers) -> str:
-    """The block's own vibration."""
+    """Paragraph on the block's own vibration."""
     return (
         f"The ripple is the block's own vibration, of period 4 L / c = {n['period']:.2g} s; the ramp starts it, only "
         "the grid damps it, and its size falls with the block's. Linear waves in a column under growing gravity give "
@@ -65,7 +65,7 @@ def ripple(n: Numbers) -> str:
 
 
 def particles(n: Numbers) -> str:
-    """What single particles see."""
+    """Paragraph on what single particles see."""
     return (
         f"Single particles see co-rotated shear stresses of up to {percent(n['largest'])}, at any size: a linear "
         "stress is held by particles of constant stress, and what that misses depends on how the grid lies. It falls "
@@ -74,7 +74,7 @@ def particles(n: Numbers) -> str:
 
 
 def controls(n: Numbers) -> str:
-    """Which Figure 2 cannot see, with the order at which a turn with strain shows them."""
+    """Paragraph on the controls that Figure 2 cannot see, with the order at which a turn with strain shows them."""
     text = (
         "A negative control is a rate that is wrong, kept to be seen failing; it can be run as the rate of any "
         "material in rate form."
@@ -91,7 +91,7 @@ def controls(n: Numbers) -> str:
 
 
 def printed(n: Numbers) -> str:
-    """The formulas of the paper."""
+    """Paragraph on the formulas of the paper."""
     return (
         "The formulas as printed, FᵀσF at both ends, do not reproduce Figure 2: they miss it by up to "
         f"{percent(n['miss'])} of the vertical stress. The shear stress flickers and quickly dies out, and so do the "
@@ -101,7 +101,7 @@ def printed(n: Numbers) -> str:
 
 
 def orders(n: Numbers) -> str:
-    """Orders of the rates, and what costs one."""
+    """Paragraph on the orders of the rates, and what costs one."""
     return (
         "F(t) = R(π t/2) diag(1 - t/5, 1), t from 0 to 1: the body is compressed along its own axis while it turns. "
         f"Rates are of second order ({span(n['least'], n['most'])} here). D in the frame of either end of the "
@@ -110,7 +110,7 @@ def orders(n: Numbers) -> str:
 
 
 def not_unique(n: Numbers) -> str:
-    """How near the rates are."""
+    """Paragraph on how near the rates are to each other."""
     return (
         f"F = [[1, g], [0, 1]] with the rate of sigma = 2 G D: all {n['rates']:g} rates are objective, and they give "
         "different stresses once rotation is large. Jaumann oscillates, Truesdell grows with the square, the "
@@ -132,7 +132,7 @@ REMARKS: dict[str, Words] = {
     Code.PRINTED: printed,
     Code.ORDERS: orders,
     Code.INCREMENT: lambda n: (
-        "The strain increment is (F1 - F0) ((F0 + F1)/2)⁻¹. With F0 alone in place of the mean, which is what a "
+        "The strain increment is (F1 - F0) ((F0 + F1)/2)⁻¹. With F0 alone instead of the mean, which is what a "
         "velocity gradient in the old configuration gives, every rate is of first order: each step by an angle a adds "
         "a volume strain of −a²."
     ),

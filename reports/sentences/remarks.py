@@ -13,39 +13,39 @@ Words = Callable[[Numbers], str]
 
 
 def table(case: str) -> Mapping[str, Words]:
-    """The words of a case by code."""
+    """Words of a case by code."""
     found: Mapping[str, Words] = import_module(f"mpm_verify.reports.sentences.{case}").REMARKS
     return found
 
 
 def sentence(remark: Remark) -> str:
-    """A remark in words."""
+    """Remark in words."""
     return table(remark.code.partition(".")[0])[remark.code](remark.numbers)
 
 
 def lead(examination: Examination) -> str:
-    """What came out."""
+    """Lead: what came out."""
     return " ".join(sentence(remark) for remark in examination.findings if not remark.group)
 
 
 def leads(examinations: Mapping[str, Examination]) -> list[str]:
-    """What came out of each, with its name where there are several."""
+    """Leads: what came out of each, with its name where there are several."""
     several = len(examinations) > 1
     return [f"{name}: {lead(one)}" if several else lead(one) for name, one in examinations.items()]
 
 
 def notes(examination: Examination, group: str) -> list[str]:
-    """What one should know of a group, a paragraph each."""
+    """Notes on a group, a paragraph each."""
     return [sentence(remark) for remark in examination.findings if remark.group == group]
 
 
 def parameters(examination: Examination) -> dict[str, str]:
-    """Each parameter with its value, and what is to be said of it."""
+    """Parameters with their values, and what is to be said of each."""
     return {name: parameter(examination, name) for name in examination.parameters}
 
 
 def parameter(examination: Examination, name: str) -> str:
-    """`31`, or `0.65 (no effect)`."""
+    """Parameter such as `31`, or `0.65 (no effect)`."""
     value = examination.parameters[name]
     text = value if isinstance(value, str) else f"{value:.10g}"
     code = examination.origins.get(name)
@@ -53,7 +53,7 @@ def parameter(examination: Examination, name: str) -> str:
 
 
 def unread(n: Numbers) -> str:
-    """Which figures there are not."""
+    """Sentence on the figures that are left out."""
     return (
         f"The curves in {n['files']} cannot be read, and their figures are left out; once they are deleted with their "
         ".json files, the same command computes those runs again."
@@ -61,5 +61,5 @@ def unread(n: Numbers) -> str:
 
 
 def missed(n: Numbers) -> str:
-    """`2 of 30 checks did not pass; they stand first.`"""
+    """Sentence such as `2 of 30 checks did not pass; they stand first.`"""
     return f"{n['missed']:g} of {n['checks']:g} checks did not pass; they stand first."

@@ -17,12 +17,12 @@ UNMEASURED = {
     CauseCode.QUADRATURE: "one particle count only; a list for --ppc adds others",
     CauseCode.GAPS: "this method knows points only",
     CauseCode.TIME_STEP: "no run with half of it; a list for --courant adds one",
-    CauseCode.ROUND_OFF: "no floor is known",
+    CauseCode.ROUND_OFF: "no round-off floor is known",
 }
 
 
 def where(stall: Stall) -> str:
-    """`from 32 to 64 cells the order is 0.58; 2.00, 1.42 before`, and how a finer run ended."""
+    """Phrase on where an order falls: `from 32 to 64 cells the order is 0.58; 2.00, 1.42 before`."""
     if stall.coarser is None or stall.order is None:
         return f"the finest run that finished has {stall.cells} cells"
     before = f"; {', '.join(words.order(p) for p in stall.before)} before" if stall.before else ""
@@ -31,12 +31,12 @@ def where(stall: Stall) -> str:
 
 
 def name(cause: Cause) -> str:
-    """What a cause is called."""
+    """Name of a cause."""
     return NAMES[cause.code]
 
 
 def measured(cause: Cause) -> str:
-    """What was measured of a cause."""
+    """Phrase on what was measured of a cause."""
     if cause.ended:
         return _run_ended(cause.ended)
     if not cause.numbers:
@@ -45,7 +45,7 @@ def measured(cause: Cause) -> str:
 
 
 def reasons(stall: Stall) -> list[str]:
-    """What explains the excess, or a part of it, in sentences; where no cause is named, they say so."""
+    """Sentences on what explains the excess, or a part of it, or that no cause is named."""
     told = [words.sentence(f"{name(c)}: {measured(c)}") for c in stall.named] or ["The evidence does not name a cause."]
     return told + [f"In part {name(c)}: {measured(c)}." for c in stall.parts]
 
@@ -61,7 +61,7 @@ def why(stall: Stall) -> list[str]:
 
 
 def cause(stall: Stall) -> str:
-    """What the numbers name, in one sentence."""
+    """Sentence on the causes that the numbers name."""
     named = [name(c) for c in stall.named]
     return f"By the numbers: {' and '.join(named)}." if named else "The numbers name no cause."
 
@@ -73,19 +73,19 @@ def _run_ended(end: Ended) -> str:
 def _crossings(n: dict[str, float], peer: Peer | None) -> str:
     if "faces_first" not in n:
         at = f" at {n['cells']:.0f} cells" if "cells" in n else ""
-        return f"a particle passes {words.few(n['faces'])} faces{at}"
-    text = f"a particle passes {n['faces']:.1f} faces, {n['faces_first']:.1f} at {n['cells_first']:.0f} cells"
+        return f"a particle crosses {words.few(n['faces'])} faces{at}"
+    text = f"a particle crosses {n['faces']:.1f} faces, {n['faces_first']:.1f} at {n['cells_first']:.0f} cells"
     if "ratio" in n:
         text += f"; from {n['cells_before']:.0f} to {n['cells']:.0f} cells they grow {n['ratio']:.1f}-fold and the "
         text += f"error beyond order {n['usual']:g} {n['excess_ratio']:.1f}-fold"
     if peer:
-        text += f"; {words.method(peer.method)} passes {peer.crossings:.1f} and has order {words.order(peer.order)}"
+        text += f"; {words.method(peer.method)} crosses {peer.crossings:.1f} and has order {words.order(peer.order)}"
     return text
 
 
 def _quadrature(n: dict[str, float], peer: Peer | None) -> str:
     word = "smaller" if n["change"] < 0 else "larger"
-    text = f"with {n['other_ppc']:.0f} per cell in place of {n['ppc']:.0f} "
+    text = f"with {n['other_ppc']:.0f} per cell instead of {n['ppc']:.0f} "
     text += f"the finest error is {words.percent(abs(n['change']), 0)} {word}"
     return text + (f" and its order {words.order(n['order'])}" if "order" in n else "")
 

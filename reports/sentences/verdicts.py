@@ -8,7 +8,7 @@ from mpm_verify.reports.sentences import failures
 
 
 def registered(e: Expectation | None) -> str:
-    """An order with its band, `2.00 (1.80 to 2.30)`; `diverges`, `stalls`, `all runs fail: det F ≤ 0`; or a dash."""
+    """Expectation with its band, `2.00 (1.80 to 2.30)`; `diverges`, `stalls`, `all runs fail: det F ≤ 0`; or a dash."""
     if e is None:
         return words.DASH
     if e.order is not None:
@@ -17,25 +17,25 @@ def registered(e: Expectation | None) -> str:
 
 
 def expected(e: Expectation) -> str:
-    """What the run was to show: `order 2`, `a stall`, `no convergence`."""
+    """Phrase on what the run was to show: `order 2`, `a stall`, `no convergence`."""
     if e.order is not None:
         return f"order {e.order:g}"
     return "a stall" if e.stall is not None else "no convergence"
 
 
 def reason(r: Reason, courants: tuple[float, ...] = ()) -> str:
-    """What decided, and after a colon the run that would decide where nothing does."""
+    """Reason of a verdict, and after a colon the run that would decide where nothing does."""
     asked = advice(r.wanted, courants) if r.wanted else ""
     return f"{said(r)}: {asked}" if asked else said(r)
 
 
 def said(r: Reason) -> str:
-    """What decided."""
+    """Phrase on what decided."""
     return SAID[r.code](r)
 
 
 def advice(wanted: Wanted, courants: tuple[float, ...] = ()) -> str:
-    """The option that asks for the run that would decide; `courants` are those of the study."""
+    """Option that asks for the run that would decide; `courants` are those of the study."""
     option = options(wanted, courants)
     if option:
         return f"run with {' '.join(option)}"
@@ -46,12 +46,12 @@ def advice(wanted: Wanted, courants: tuple[float, ...] = ()) -> str:
     if wanted.action is Action.HALVE_FINEST:
         return f"run h={words.size(wanted.h)} with half the time step"
     return f"run h={words.size(wanted.h)}" + (
-        " in place of the finest" if wanted.action is Action.REPLACE_FINEST else ""
+        " instead of the finest" if wanted.action is Action.REPLACE_FINEST else ""
     )
 
 
 def options(wanted: Wanted, courants: tuple[float, ...] = ()) -> tuple[str, ...]:
-    """The option of `verify mms` and its value; nothing where no option asks for that run.
+    """Option of `verify mms` and its value; nothing where no option asks for that run.
 
     `courants`: those of the study, the largest, with which its levels are run, first.
     """
@@ -65,7 +65,7 @@ def options(wanted: Wanted, courants: tuple[float, ...] = ()) -> tuple[str, ...]
 
 
 def ended(end: Ended) -> str:
-    """Why a level has no error."""
+    """Reason why a level has no error."""
     return failures.failure(end.failure) + failures.replicate(end.replicate)
 
 

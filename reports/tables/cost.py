@@ -1,4 +1,4 @@
-"""What many methods cost: error, updates and time of each on its finest grid, and what a given error costs."""
+"""Cost of many methods: error, updates and time of each on its finest grid, and what a given error costs."""
 
 from itertools import pairwise
 from math import exp, log
@@ -9,7 +9,7 @@ from mpm_verify.reports.figures.convergence import methods
 from mpm_verify.reports.frames import Record
 
 MANY = 4  # methods, from which on a study is a comparison
-TARGET = 0.01  # share of the exact rms at which costs are compared
+TARGET = 0.01  # error over the exact rms at which costs are compared
 
 
 def compares(record: Record) -> bool:
@@ -18,7 +18,7 @@ def compares(record: Record) -> bool:
 
 
 def costs(record: Record) -> list[dict[str, Any]]:
-    """A row a series: what its finest run took, and what an error of TARGET costs (None where it is not reached)."""
+    """Rows, one for each series: what its finest run took, and what an error of TARGET costs, if reached."""
     rows = []
     for s in record.series:
         results = [r for run in s.runs if (r := record.result(run)) and r.status == "finished"]

@@ -22,13 +22,13 @@ def frames(record: Record) -> dict[str, pd.DataFrame]:
 
 
 def write(record: Record, folder: Path) -> None:
-    """One CSV file a table; numbers read back as they are stored."""
+    """Write one CSV file for each table; numbers read back as they are stored."""
     for name, frame in frames(record).items():
         frame.to_csv(folder / f"{name}.csv", index=False, lineterminator="\n")
 
 
 def runs(record: Record) -> Rows:
-    """A row a run, done or not, with every parameter, its errors as `error QUANTITY NORM`, and its values."""
+    """Rows, one for each run, done or not, with every parameter, errors as `error QUANTITY NORM`, and values."""
     rows = []
     for run in record.study.runs:
         result = record.result(run)
@@ -43,7 +43,7 @@ def runs(record: Record) -> Rows:
 
 
 def levels(record: Record, found: Finding) -> Rows:
-    """A row a cell size of a finding: error, local order, and why there is none."""
+    """Rows of a finding, one for each cell size: error, local order, and why there is none."""
     rows: Rows = []
     last: tuple[float, float] | None = None
     for level in found.levels:
@@ -59,7 +59,7 @@ def levels(record: Record, found: Finding) -> Rows:
 
 
 def every_level(record: Record) -> Rows:
-    """The levels of all findings."""
+    """Rows of the levels of all findings."""
     return [
         joined(record.columns(f.plan.run), {"quantity": f.plan.quantity, "norm": f.plan.norm}, row)
         for f in record.findings
@@ -68,7 +68,7 @@ def every_level(record: Record) -> Rows:
 
 
 def verdicts(record: Record) -> Rows:
-    """A row a finding."""
+    """Rows, one for each finding."""
     return [
         joined(
             record.columns(f.plan.run),

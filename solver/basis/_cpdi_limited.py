@@ -9,7 +9,7 @@ from mpm_verify.solver.weights import FILL
 
 @kernel(FILL)
 def fill_limited(x, F, domain, ox, oy, inv_dx, nx, ny, x0, x1, y0, y1, table, node):
-    """The fill of solver/basis/cpdi.py with half diagonals no longer than the fifth number of each domain, in cells."""
+    """Fill as in solver/basis/cpdi.py, with half diagonals no longer than the fifth number of each domain, in cells."""
     bad = 0
     for b in range(x.shape[0] // 2):
         r1x, r1y, r2x, r2y = half_sides(b, 5 * b, F, domain)

@@ -1,4 +1,4 @@
-"""What the GIMP bases share: a hat function averaged over an interval, by its antiderivative."""
+"""Helpers of the GIMP bases: a hat function averaged over an interval, by its antiderivative."""
 
 import numpy as np
 
@@ -22,9 +22,9 @@ def hat(s):
 
 @kernel(inline=True)
 def value(s, half, per_length):
-    """Mean over (s - half, s + half) of the hat; per_length = 1 / (2 half).
+    """Mean of the hat over (s - half, s + half), lengths in cells; per_length = 1 / (2 half).
 
-    Lengths in cells. Source: Bardenhagen & Kober 2004, S_ip.
+    Source: Bardenhagen & Kober 2004, S_ip.
     """
     above = clip(s + half)
     below = clip(s - half)
@@ -38,7 +38,7 @@ def slope(s, half, per_length):
 
 
 def half_lengths(layout: Layout) -> Floats:
-    """Half lengths (P,2) of domains along the axes: of a turned domain, its extents scaled to its area."""
+    """Half lengths (P,2) of domains in x and y: of a turned domain, its extents scaled to its area."""
     extent: Floats = np.abs(layout.r0).sum(axis=1)
     half: Floats = extent * np.sqrt(layout.V0 / (4.0 * extent.prod(axis=1)))[:, None]
     return half

@@ -1,4 +1,4 @@
-"""Parallelograms around particles, in kernels: their half sides, where they end, and the weights of their corners."""
+"""Helpers of the two fills of CPDI: half sides of a parallelogram, whether it fits, and its weights by its corners."""
 
 from mpm_verify.solver._jit import kernel
 from mpm_verify.solver.weights import bilinear, outside
@@ -17,7 +17,7 @@ def half_sides(b, at, F, domain):
 
 @kernel(inline=True)
 def passed(b, x, r1x, r1y, r2x, r2y, ox, oy, inv_dx, x0, x1, y0, y1):
-    """How many sides of the box a corner has passed. Before the weights are written: after it nothing vectorises."""
+    """Number of sides of the box that a corner has passed; before weights are written: after it nothing vectorises."""
     px = (x[2 * b] - ox) * inv_dx
     py = (x[2 * b + 1] - oy) * inv_dx
     ex = max(abs(r1x + r2x), abs(r1x - r2x)) * inv_dx
@@ -27,7 +27,7 @@ def passed(b, x, r1x, r1y, r2x, r2y, ox, oy, inv_dx, x0, x1, y0, y1):
 
 @kernel(inline=True)
 def parallelogram(b, x, r1x, r1y, r2x, r2y, ox, oy, inv_dx, ny, table, node):
-    """N and dN of the four nodes around each corner, sixteen in all, some of them the same."""
+    """Write N and dN of the four nodes around each corner, sixteen in all, some of them the same."""
     per_area = 0.25 / (r1x * r2y - r1y * r2x)
     ax = (r1y - r2y) * per_area  # gradient weight of corner 1, and with the other sign of corner 3
     ay = (r2x - r1x) * per_area

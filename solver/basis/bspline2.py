@@ -1,4 +1,4 @@
-"""Quadratic B-splines on the grid: smooth weights at a point, three nodes along each axis.
+"""Quadratic B-splines on the grid: smooth weights at a point, three nodes in each direction.
 
     N(s) = 3/4 - s^2 for |s| < 1/2,  (3/2 - |s|)^2 / 2 for |s| < 3/2;  s in cells from the node
 
@@ -21,7 +21,7 @@ from mpm_verify.solver.weights import FILL, Basis, Promise, outside
 
 @kernel(inline=True)
 def fold(w0, w1, w2, first, last):
-    """Weights with those of a node behind the wall, where `first` or `last` is 1, put onto the two next to it."""
+    """Weights with that of a node behind the wall, where `first` or `last` is 1, put onto the two next to it."""
     ghost = first * w0
     other = last * w2
     return w0 - ghost - other, w1 + 2.0 * (ghost + other), w2 - other - ghost
@@ -29,7 +29,7 @@ def fold(w0, w1, w2, first, last):
 
 @kernel(FILL)
 def fill(x, F, domain, ox, oy, inv_dx, nx, ny, x0, x1, y0, y1, table, node):
-    """N and dN of the nearest node and of those around it, nine in all; see solver/weights.py."""
+    """Write N and dN of the nearest node and of those around it, nine in all; see solver/weights.py."""
     bad = 0
     for b in range(x.shape[0] // 2):
         px = (x[2 * b] - ox) * inv_dx
@@ -60,7 +60,13 @@ def fill(x, F, domain, ox, oy, inv_dx, nx, ny, x0, x1, y0, y1, table, node):
 
 
 class Bspline2(Basis):
-    """Nine neighbours, order 2."""
+    """Quadratic B-splines: nine support nodes, order 2.
+
+    References
+    ----------
+    Steffen, Kirby & Berzins 2008, doi:10.1002/nme.2360.
+    Tielen, Wobbes, Moeller & Beuth 2017, doi:10.1016/j.proeng.2017.01.022, for the stall with crossings.
+    """
 
     support: ClassVar[int] = 9
     order: ClassVar[float] = 2.0
@@ -68,5 +74,5 @@ class Bspline2(Basis):
 
     @classmethod
     def promises(cls, crossing: bool) -> Promise:
-        """The order of u falls once particles cross cells."""
+        """Stall of u once particles cross cells."""
         return Promise(None, True, "Tielen, Wobbes, Moeller & Beuth 2017") if crossing else Promise(cls.order)

@@ -1,4 +1,4 @@
-"""Cubic B-splines on the grid: smooth weights at a point, four nodes along each axis.
+"""Cubic B-splines on the grid: smooth weights at a point, four nodes in each direction.
 
     N(s) = 2/3 - s^2 + |s|^3 / 2 for |s| < 1,  (2 - |s|)^3 / 6 for |s| < 2;  s in cells from the node
 
@@ -26,7 +26,7 @@ def weights(s):
 
 @kernel(inline=True)
 def slopes(s, inv_dx):
-    """Their derivatives."""
+    """Derivatives of the weights at the four nodes, per length."""
     r = 1.0 - s
     half = 0.5 * inv_dx
     return -half * r * r, half * s * (3.0 * s - 4.0), half * r * (4.0 - 3.0 * r), half * s * s
@@ -34,7 +34,7 @@ def slopes(s, inv_dx):
 
 @kernel(inline=True)
 def fold(w0, w1, w2, w3, first, last):
-    """Weights with those of a node behind the wall, where `first` or `last` is 1, put onto the two next to it."""
+    """Weights with that of a node behind the wall, where `first` or `last` is 1, put onto the two next to it."""
     ghost = first * w0
     other = last * w3
     return w0 - ghost, w1 + 2.0 * ghost - other, w2 + 2.0 * other - ghost, w3 - other
@@ -42,7 +42,7 @@ def fold(w0, w1, w2, w3, first, last):
 
 @kernel(FILL)
 def fill(x, F, domain, ox, oy, inv_dx, nx, ny, x0, x1, y0, y1, table, node):
-    """N and dN of sixteen nodes; see solver/weights.py."""
+    """Write N and dN of sixteen nodes; see solver/weights.py."""
     bad = 0
     for b in range(x.shape[0] // 2):
         px = (x[2 * b] - ox) * inv_dx
@@ -74,7 +74,12 @@ def fill(x, F, domain, ox, oy, inv_dx, nx, ny, x0, x1, y0, y1, table, node):
 
 
 class Bspline3(Basis):
-    """Sixteen neighbours, order 2."""
+    """Cubic B-splines: sixteen support nodes, order 2.
+
+    References
+    ----------
+    Steffen, Kirby & Berzins 2008, doi:10.1002/nme.2360.
+    """
 
     support: ClassVar[int] = 16
     order: ClassVar[float] = 2.0
@@ -82,5 +87,5 @@ class Bspline3(Basis):
 
     @classmethod
     def promises(cls, crossing: bool) -> Promise:
-        """The order of u falls once particles cross cells: as with bspline2, on finer cells; measured, no source."""
+        """Stall of u once particles cross cells: as with bspline2, on finer cells; measured, no source."""
         return Promise(None, stalls=True) if crossing else Promise(cls.order)

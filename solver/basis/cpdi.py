@@ -7,7 +7,7 @@ Source: Sadeghirad, Brannon & Burghardt 2011; paper eqs. (2), (3). The paper lea
 edge integrals of the interpolation, divided by the area.
 
 With cpdi:limit=1 no half diagonal r1 +- r2 is longer than one cell: longer ones are cut to it, each in its direction
-(Homel, Brannon & Guilkey 2016). Without it, domains of a flow grow beyond their neighbours and tie together what has
+(Homel, Brannon & Guilkey 2016). Without it, domains of a flow grow beyond the next ones and tie together what has
 parted; with it, they part. The volume of the particle stays J V0, and is the area of its domain no longer.
 """
 
@@ -22,12 +22,12 @@ from mpm_verify.solver._jit import kernel
 from mpm_verify.solver.basis._parallelogram import half_sides, parallelogram, passed
 from mpm_verify.solver.layout import Layout, parallelograms
 from mpm_verify.solver.state import Floats
-from mpm_verify.solver.weights import FILL, Basis, Place, Promise
+from mpm_verify.solver.weights import FILL, Basis, Position, Promise
 
 
 @kernel(FILL)
 def fill(x, F, r0, ox, oy, inv_dx, nx, ny, x0, x1, y0, y1, table, node):
-    """See solver/weights.py."""
+    """Write N and dN of the four nodes around each corner, sixteen in all; see solver/weights.py."""
     bad = 0
     for b in range(x.shape[0] // 2):
         r1x, r1y, r2x, r2y = half_sides(b, 4 * b, F, r0)
@@ -38,7 +38,23 @@ def fill(x, F, r0, ox, oy, inv_dx, nx, ny, x0, x1, y0, y1, table, node):
 
 @dataclass(frozen=True)
 class Cpdi(Basis):
-    """Sixteen neighbours, order 2. `limit` of the half diagonals, in cells; raises ValueError unless above zero."""
+    """CPDI: sixteen support nodes, order 2.
+
+    Parameters
+    ----------
+    limit
+        Longest half diagonal of a domain, in cells, above zero.
+
+    Raises
+    ------
+    ValueError
+        For another limit.
+
+    References
+    ----------
+    Sadeghirad, Brannon & Burghardt 2011, doi:10.1002/nme.3110.
+    Homel, Brannon & Guilkey 2016, doi:10.1002/nme.5151, for the limit.
+    """
 
     limit: float = inf
     support: ClassVar[int] = 16
@@ -58,21 +74,21 @@ class Cpdi(Basis):
 
     @classmethod
     def promises(cls, crossing: bool) -> Promise:
-        """The order stays when particles cross cells."""
+        """Order of u, the same when particles cross cells."""
         return Promise(cls.order, source="Sadeghirad, Brannon & Burghardt 2011")
 
     def limited(self, limit: float) -> "Cpdi":
-        """The basis with this limit, unless it has one."""
+        """Basis with half diagonals no longer than `limit`, in cells; itself if it has a limit."""
         return self if self.limit < inf else replace(self, limit=limit)
 
-    def domain(self, layout: Layout, place: Place) -> Floats:
-        """Initial half side vectors r0; F moves them. With a limit, that too."""
+    def domain(self, layout: Layout, position: Position) -> Floats:
+        """Initial half side vectors r0 (P,4), which F moves; with a limit (P,5), that too."""
         r0 = layout.r0.reshape(-1, 4).copy()
         return r0 if self.limit == inf else np.column_stack([r0, np.full(len(r0), self.limit)])
 
     @staticmethod
     def corners(x: Floats, F: Floats, domain: Floats, dx: float) -> Floats:
-        """x - r1 - r2 and so on, r = F r0, cut where there is a limit."""
+        """Corners (P,4,2) x - r1 - r2 and so on, r = F r0, cut where there is a limit."""
         r = np.einsum("pab,psb->psa", F, domain[:, :4].reshape(-1, 2, 2))
         if domain.shape[1] == 5:
             half = np.stack([r[:, 0] + r[:, 1], r[:, 0] - r[:, 1]], axis=1)

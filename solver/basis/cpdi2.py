@@ -1,8 +1,9 @@
 """CPDI2: hat functions averaged over a quadrilateral whose corners move with the grid's velocity.
 
-The field is interpolated bilinearly from the corners, so neighbours share them and leave no gaps, rotation and bending
-included. N and dN are the exact means of that interpolation and of its gradient over the quadrilateral; a particle's
-weights reproduce its centroid. Source: Sadeghirad, Brannon & Guilkey 2013. Order 2, large deformation included.
+The field is interpolated bilinearly from the corners, so adjacent domains share them and leave no gaps, rotation and
+bending included. N and dN are the exact means of that interpolation and of its gradient over the quadrilateral; a
+particle's weights reproduce its centroid. Source: Sadeghirad, Brannon & Guilkey 2013. Order 2, large deformation
+included.
 """
 
 from typing import ClassVar
@@ -14,12 +15,12 @@ from mpm_verify.solver._jit import BLOCK, F1, F2, f8, i8, kernel, nothing
 from mpm_verify.solver.failure import FailureKind
 from mpm_verify.solver.layout import Layout
 from mpm_verify.solver.state import Floats, Grid, Particles
-from mpm_verify.solver.weights import FILL, Basis, Place, Promise, Refusal, bilinear, outside
+from mpm_verify.solver.weights import FILL, Basis, Fault, Position, Promise, bilinear, outside
 
 
 @kernel(FILL)
 def fill(x, F, corner, ox, oy, inv_dx, nx, ny, x0, x1, y0, y1, table, node):
-    """N and dN of the four nodes around each corner, sixteen in all, some of them the same; see solver/weights.py."""
+    """Write N and dN of the four nodes around each corner, sixteen in all; see solver/weights.py."""
     bad = 0
     for b in range(x.shape[0] // 2):
         ax = (corner[8 * b] - ox) * inv_dx
@@ -52,11 +53,11 @@ def fill(x, F, corner, ox, oy, inv_dx, nx, ny, x0, x1, y0, y1, table, node):
 
 
 @kernel(nothing(F1, f8, f8, f8, i8, F2, f8))
-def move(places, ox, oy, inv_dx, ny, velocity_acceleration, dt):
-    """x_c <- x_c + dt sum S_i(x_c) v_i for flat places."""
-    for c in range(places.shape[0] // 2):
-        x = (places[2 * c] - ox) * inv_dx
-        y = (places[2 * c + 1] - oy) * inv_dx
+def move(corner, ox, oy, inv_dx, ny, velocity_acceleration, dt):
+    """Move corners, flat: x_c <- x_c + dt sum S_i(x_c) v_i."""
+    for c in range(corner.shape[0] // 2):
+        x = (corner[2 * c] - ox) * inv_dx
+        y = (corner[2 * c + 1] - oy) * inv_dx
         i = np.floor(x)
         j = np.floor(y)
         right = x - i
@@ -65,20 +66,25 @@ def move(places, ox, oy, inv_dx, ny, velocity_acceleration, dt):
         for a in range(2):
             low = (1.0 - above) * velocity_acceleration[node, a] + above * velocity_acceleration[node + 1, a]
             high = (1.0 - above) * velocity_acceleration[node + ny, a] + above * velocity_acceleration[node + ny + 1, a]
-            places[2 * c + a] += dt * ((1.0 - right) * low + right * high)
+            corner[2 * c + a] += dt * ((1.0 - right) * low + right * high)
 
 
 @kernel(nothing(F1, F1, f8, i8, F2, f8), parallel=True)
-def move_all(places, origin, inv_dx, ny, velocity_acceleration, dt):
-    """The same in blocks."""
-    for block in prange((places.shape[0] + 8 * BLOCK - 1) // (8 * BLOCK)):
+def move_all(corner, origin, inv_dx, ny, velocity_acceleration, dt):
+    """Move all corners, in blocks."""
+    for block in prange((corner.shape[0] + 8 * BLOCK - 1) // (8 * BLOCK)):
         lo = 8 * BLOCK * block
-        hi = min(lo + 8 * BLOCK, places.shape[0])
-        move(places[lo:hi], origin[0], origin[1], inv_dx, ny, velocity_acceleration, dt)
+        hi = min(lo + 8 * BLOCK, corner.shape[0])
+        move(corner[lo:hi], origin[0], origin[1], inv_dx, ny, velocity_acceleration, dt)
 
 
 class Cpdi2(Basis):
-    """Sixteen neighbours, order 2."""
+    """CPDI2: sixteen support nodes, order 2.
+
+    References
+    ----------
+    Sadeghirad, Brannon & Guilkey 2013, doi:10.1002/nme.4526.
+    """
 
     support: ClassVar[int] = 16
     order: ClassVar[float] = 2.0
@@ -87,27 +93,27 @@ class Cpdi2(Basis):
 
     @classmethod
     def promises(cls, crossing: bool) -> Promise:
-        """The order stays when particles cross cells."""
+        """Order of u, the same when particles cross cells."""
         return Promise(cls.order, source="Sadeghirad, Brannon & Guilkey 2013")
 
     @staticmethod
-    def domain(layout: Layout, place: Place) -> Floats:
-        """Places of the four corners, counter-clockwise."""
-        return place(layout.corners.reshape(-1, 2)).reshape(-1, 8)
+    def domain(layout: Layout, position: Position) -> Floats:
+        """Positions (P,8) of the four corners at the start, counter-clockwise."""
+        return position(layout.corners.reshape(-1, 2)).reshape(-1, 8)
 
     @staticmethod
     def corners(x: Floats, F: Floats, domain: Floats, dx: float) -> Floats:
-        """As they have moved."""
+        """Corners (P,4,2) as they have moved."""
         return domain.reshape(-1, 4, 2)
 
     @staticmethod
     def convect(particles: Particles, grid: Grid, dt: float) -> None:
-        """Corners are material points: they go with the velocity of the grid."""
+        """Move the corners with the velocity of the grid: they are material points."""
         move_all(particles.domain.ravel(), grid.origin, 1.0 / grid.dx, grid.ny, grid.velocity_acceleration, dt)
 
     @staticmethod
-    def refusal(F: Floats, domain: Floats, dx: float) -> Refusal:
-        """Inside out, or a corner that left the grid."""
+    def fault(F: Floats, domain: Floats, dx: float) -> Fault:
+        """Domain inverted, or a corner that left the grid."""
         one, two = domain[4:6] - domain[0:2], domain[6:8] - domain[2:4]
         if not one[0] * two[1] - one[1] * two[0] > 0:
             return FailureKind.DOMAIN_INVERTED, {}

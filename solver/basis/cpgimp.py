@@ -1,6 +1,6 @@
-"""cpGIMP: GIMP on rectangles that stretch with the diagonal of F, l = |F_xx| l0_x along x and |F_yy| l0_y along y.
+"""cpGIMP: GIMP on rectangles that stretch with the diagonal of F, l = |F_xx| l0_x in x and |F_yy| l0_y in y.
 
-Contiguous particles where the body is stretched along the axes; shear and rotation are not followed: a body that turns
+Contiguous particles where the body is stretched in x and y; shear and rotation are not followed: a body that turns
 and is stretched gets domains much too wide or, where F_xx or F_yy vanishes, none. Half lengths of up to one cell.
 Source: Bardenhagen & Kober 2004; Wallstedt & Guilkey 2008.
 """
@@ -15,12 +15,12 @@ from mpm_verify.solver.failure import FailureKind
 from mpm_verify.solver.layout import Layout, parallelograms
 from mpm_verify.solver.state import Floats
 from mpm_verify.solver.tensor import four
-from mpm_verify.solver.weights import FILL, Basis, Place, Refusal, outside
+from mpm_verify.solver.weights import FILL, Basis, Fault, Position, outside
 
 
 @kernel(inline=True)
 def column(a, b, first, sx, lx, per_x, inv_dx, Y0, Y1, Y2, Y3, D0, D1, D2, D3, table, node):
-    """The four nodes of column a. Called four times: the vectoriser passes a loop by."""
+    """Write the four nodes of column a; called four times: the vectoriser passes a loop by."""
     Nx = value(sx - a, lx, per_x)
     Gx = slope(sx - a, lx, per_x) * inv_dx
     four(4 * a, 16, b, first, Nx, Gx, Y0, Y1, Y2, Y3, D0, D1, D2, D3, table, node)
@@ -28,7 +28,7 @@ def column(a, b, first, sx, lx, per_x, inv_dx, Y0, Y1, Y2, Y3, D0, D1, D2, D3, t
 
 @kernel(FILL)
 def fill(x, F, l0, ox, oy, inv_dx, nx, ny, x0, x1, y0, y1, table, node):
-    """N and dN of the nodes that a domain of up to two cells can reach, sixteen in all; see solver/weights.py."""
+    """Write N and dN of the nodes that a domain of up to two cells can reach, sixteen in all; see solver/weights.py."""
     bad = 0
     for b in range(x.shape[0] // 2):
         px = (x[2 * b] - ox) * inv_dx
@@ -60,7 +60,13 @@ def fill(x, F, l0, ox, oy, inv_dx, nx, ny, x0, x1, y0, y1, table, node):
 
 
 class Cpgimp(Basis):
-    """Sixteen neighbours, order 2 while the body neither turns nor shears."""
+    """GIMP on stretched rectangles (cpGIMP): sixteen support nodes, order 2 while the body neither turns nor shears.
+
+    References
+    ----------
+    Bardenhagen & Kober 2004, doi:10.3970/cmes.2004.005.477.
+    Wallstedt & Guilkey 2008, doi:10.1016/j.jcp.2008.07.019.
+    """
 
     support: ClassVar[int] = 16
     order: ClassVar[float] = 2.0
@@ -68,19 +74,19 @@ class Cpgimp(Basis):
     domain_size: ClassVar[int] = 2
 
     @staticmethod
-    def domain(layout: Layout, place: Place) -> Floats:
-        """Half lengths along x and y, as at first."""
+    def domain(layout: Layout, position: Position) -> Floats:
+        """Half lengths (P,2) in x and y at the start."""
         return half_lengths(layout)
 
     @staticmethod
     def corners(x: Floats, F: Floats, domain: Floats, dx: float) -> Floats:
-        """Of rectangles along the axes."""
+        """Corners (P,4,2) of rectangles with sides in x and y."""
         half = np.abs(np.diagonal(F, axis1=1, axis2=2)) * domain
         return parallelograms(x, half[:, :, None] * np.eye(2))
 
     @staticmethod
-    def refusal(F: Floats, domain: Floats, dx: float) -> Refusal:
-        """Too wide for sixteen support nodes, without width, or at the edge."""
+    def fault(F: Floats, domain: Floats, dx: float) -> Fault:
+        """Domain too wide for sixteen support nodes, domain without width, or particle at the edge."""
         half = np.abs(np.diagonal(F)) * domain
         if half.max() > dx:
             return FailureKind.DOMAIN_TOO_WIDE, {"width": 2 * float(half.max()) / dx, "limit": 2.0}

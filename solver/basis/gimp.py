@@ -15,14 +15,14 @@ from mpm_verify.solver.failure import FailureKind
 from mpm_verify.solver.layout import Layout, parallelograms
 from mpm_verify.solver.state import Floats
 from mpm_verify.solver.tensor import three
-from mpm_verify.solver.weights import FILL, Basis, Place, Promise, Refusal, outside
+from mpm_verify.solver.weights import FILL, Basis, Fault, Position, Promise, outside
 
 LARGEST = 0.5 + 1e-9  # half length, in cells: beyond, a domain reaches a fourth node
 
 
 @kernel(FILL)
 def fill(x, F, l0, ox, oy, inv_dx, nx, ny, x0, x1, y0, y1, table, node):
-    """N and dN of the nearest node and of those around it, nine in all; see solver/weights.py."""
+    """Write N and dN of the nearest node and of those around it, nine in all; see solver/weights.py."""
     bad = 0
     for b in range(x.shape[0] // 2):
         px = (x[2 * b] - ox) * inv_dx
@@ -66,7 +66,13 @@ def fill(x, F, l0, ox, oy, inv_dx, nx, ny, x0, x1, y0, y1, table, node):
 
 
 class Gimp(Basis):
-    """Nine neighbours, order 2 before the first cell crossing."""
+    """GIMP with domains of fixed size: nine support nodes, order 2 before the first cell crossing.
+
+    References
+    ----------
+    Bardenhagen & Kober 2004, doi:10.3970/cmes.2004.005.477.
+    Wallstedt & Guilkey 2008, doi:10.1016/j.jcp.2008.07.019, for the order with crossings.
+    """
 
     support: ClassVar[int] = 9
     order: ClassVar[float] = 2.0
@@ -75,23 +81,23 @@ class Gimp(Basis):
 
     @classmethod
     def promises(cls, crossing: bool) -> Promise:
-        """The order of u falls once particles cross cells."""
+        """Stall of u once particles cross cells."""
         return Promise(None, True, "Wallstedt & Guilkey 2008") if crossing else Promise(cls.order)
 
     @staticmethod
-    def domain(layout: Layout, place: Place) -> Floats:
-        """Half lengths along x and y, as at first."""
+    def domain(layout: Layout, position: Position) -> Floats:
+        """Half lengths (P,2) in x and y at the start."""
         return half_lengths(layout)
 
     @staticmethod
     def corners(x: Floats, F: Floats, domain: Floats, dx: float) -> Floats:
-        """Of rectangles along the axes."""
+        """Corners (P,4,2) of rectangles with sides in x and y."""
         half = domain
         return parallelograms(x, half[:, :, None] * np.eye(2))
 
     @staticmethod
-    def refusal(F: Floats, domain: Floats, dx: float) -> Refusal:
-        """Too wide for nine support nodes, or at the edge."""
+    def fault(F: Floats, domain: Floats, dx: float) -> Fault:
+        """Domain too wide for nine support nodes, or particle at the edge."""
         if not domain.max() < LARGEST * dx:
             return FailureKind.DOMAIN_TOO_WIDE, {"width": 2 * float(domain.max()) / dx, "limit": 1.0}
         return FailureKind.OUTSIDE_GRID, {}

@@ -16,7 +16,7 @@ B = BLOCK
 
 @kernel(FILL)
 def fill(x, F, domain, ox, oy, inv_dx, nx, ny, x0, x1, y0, y1, table, node):
-    """N and dN of the four nodes of the cell that holds the particle; see solver/weights.py."""
+    """Write N and dN of the four nodes of the cell that holds the particle; see solver/weights.py."""
     bad = 0
     for b in range(x.shape[0] // 2):
         px = (x[2 * b] - ox) * inv_dx
@@ -49,7 +49,13 @@ def fill(x, F, domain, ox, oy, inv_dx, nx, ny, x0, x1, y0, y1, table, node):
 
 
 class Mpm(Basis):
-    """Four neighbours, order 2 before the first cell crossing."""
+    """Classical MPM: four support nodes, order 2 before the first cell crossing.
+
+    References
+    ----------
+    Sulsky, Chen & Schreyer 1994, doi:10.1016/0045-7825(94)90112-0.
+    Steffen, Kirby & Berzins 2008, doi:10.1002/nme.2360, for the error with crossings.
+    """
 
     support: ClassVar[int] = 4
     order: ClassVar[float] = 2.0
@@ -58,5 +64,5 @@ class Mpm(Basis):
 
     @classmethod
     def promises(cls, crossing: bool) -> Promise:
-        """The error of u grows once particles cross cells."""
+        """Growth of the error of u once particles cross cells."""
         return Promise(None, source="Steffen, Kirby & Berzins 2008") if crossing else Promise(cls.order)

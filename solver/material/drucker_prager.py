@@ -7,7 +7,7 @@ plane_strain: strength and dilation of Mohr-Coulomb where plane strain fails. Th
     strain has no zz: s_zz = -2/3 d sqrt(J2). With it, radius t and centre s of Mohr's circle have
     t = sqrt(1 - d^2/3) sqrt(J2), s = p + d/3 sqrt(J2), and flow has volume to shear d / sqrt(1 - d^2/3) = sin psi. So
     d = n sin psi, a = (sin phi / n) / (1 + sin phi sin psi / 3), n = (1 + sin^2 psi / 3)^(-1/2);
-    for psi = phi it is a = 3 tan phi / sqrt(9 + 12 tan^2 phi) (Drucker & Prager 1952).
+    for psi = phi it is a = 3 tan phi / sqrt(9 + 12 tan^2 phi) (Drucker & Prager 1952, doi:10.1090/qam/48291).
 compression: the edge s1 = s2, a = 6 sin phi / (sqrt(3) (3 - sin phi)), d alike with psi (de Souza Neto, Peric & Owen
     2008, chapter 6). In plane strain it is stronger than Mohr-Coulomb.
 
@@ -33,7 +33,7 @@ from mpm_verify.solver.voids import check_void, close_void
 
 @kernel(RESPOND)
 def respond(constants, sigma, de, history):
-    """Elastic trial stress, and its return where it is not admissible; history gamma_p, eps_v_p, void."""
+    """Write the elastic trial stress, or its return where it is not admissible; history gamma_p, eps_v_p, void."""
     lam, shear, slope, strength = constants[0], constants[1], constants[2], constants[3]
     for b in range(sigma.shape[0] // 4):
         if history[3 * b + 2] != 0.0:
@@ -51,14 +51,14 @@ def respond(constants, sigma, de, history):
             up, down, _ = in_plane(xx, yy, xy)
             t1, _, t3 = in_order(up, down, zz)
             step = excess * constants[4]
-            finite = 0.0 * (xx + yy + zz + xy)  # the apex is finite whatever comes in: a lost state stays lost
-            share, mean = finite, constants[6] + finite
+            finite = 0.0 * (xx + yy + zz + xy)  # the apex is finite whatever comes in: a state that is NaN stays so
+            scale, mean = finite, constants[6] + finite
             if step < root:
-                share, mean = 1.0 - step / root, p - step * constants[5]
+                scale, mean = 1.0 - step / root, p - step * constants[5]
             opens = constants[8] > 0.0 and not step < root
-            history[3 * b] += (1.0 - share) * (t1 - t3) / shear
+            history[3 * b] += (1.0 - scale) * (t1 - t3) / shear
             history[3 * b + (2 if opens else 1)] += (p - mean) * constants[7]
-            xx, yy, zz, xy = mean + share * sxx, mean + share * syy, mean + share * szz, share * xy
+            xx, yy, zz, xy = mean + scale * sxx, mean + scale * syy, mean + scale * szz, scale * xy
         sigma[4 * b] = xx
         sigma[4 * b + 1] = yy
         sigma[4 * b + 2] = zz
@@ -66,13 +66,13 @@ def respond(constants, sigma, de, history):
 
 
 def plane_strain(phi: float, psi: float) -> tuple[float, float]:
-    """a and d of the cone that fails as Mohr-Coulomb in plane strain; angles in degrees."""
+    """Slopes a and d of the cone that fails as Mohr-Coulomb in plane strain; angles in degrees."""
     n = 1 / sqrt(1 + sin(radians(psi)) ** 2 / 3)
     return sin(radians(phi)) / n / (1 + sin(radians(phi)) * sin(radians(psi)) / 3), n * sin(radians(psi))
 
 
 def compression(phi: float, psi: float) -> tuple[float, float]:
-    """a and d of the cone through the compression edges of Mohr-Coulomb; angles in degrees."""
+    """Slopes a and d of the cone through the compression edges of Mohr-Coulomb; angles in degrees."""
     a, d = (6 * sin(radians(angle)) / (sqrt(3) * (3 - sin(radians(angle)))) for angle in (phi, psi))
     return a, d
 
@@ -85,7 +85,32 @@ CONES: dict[str, Callable[[float, float], tuple[float, float]]] = {
 
 @dataclass(frozen=True)
 class DruckerPrager(RateMaterial, Elastic):
-    """Parameters, history, and ValueError as in mohr_coulomb, no cut-off; `cone`: plane_strain or compression."""
+    """Drucker-Prager soil, in rate form; history as of MohrCoulomb.
+
+    Parameters
+    ----------
+    rate
+        Objective rate, a file of solver/rates.
+    E, nu, rho0
+        Young's modulus and density above zero, Poisson's ratio between -1 and 0.5.
+    phi, psi
+        Angles of friction and dilation in degrees, 0 < phi < 90, 0 <= psi <= phi.
+    c
+        Cohesion in the unit of E, zero or more.
+    cone
+        ``plane_strain`` or ``compression``.
+    void
+        1 with void-strain memory (solver/voids.py), which needs c = 0.
+
+    Raises
+    ------
+    ValueError
+        For a parameter that is out of range.
+
+    References
+    ----------
+    de Souza Neto, Peric & Owen 2008, doi:10.1002/9780470694626, chapters 6 and 8.
+    """
 
     E: float = 840e3
     rho0: float = 2650.0
@@ -113,11 +138,11 @@ class DruckerPrager(RateMaterial, Elastic):
 
     @property
     def cohesion(self) -> float:
-        """Cohesion c."""
+        """Cohesion c, in the unit of E."""
         return self.c
 
     def constants(self) -> Floats:
-        """lam, 2 mu, a, b, and factors of the return."""
+        """Constants (9,): lam, 2 mu, a, b, and factors of the return."""
         a, d = CONES[self.cone](self.phi, self.psi)
         stiff = self.lam + 2 * self.mu / 3  # bulk modulus
         ratio, apex = d * stiff / self.mu, self.c / tan(radians(self.phi))

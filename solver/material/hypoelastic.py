@@ -1,4 +1,4 @@
-"""Hypoelastic solid, the linear elastic law of the paper's section 2.2: rate of sigma = lam tr(D) I + 2 mu D.
+"""Hypoelastic solid, the linear elastic material of the paper's section 2.2: rate of sigma = lam tr(D) I + 2 mu D.
 
 In uniaxial strain sigma = (lam + 2 mu) ln(stretch). It has no energy: no manufactured solution can be derived for it.
 """
@@ -16,7 +16,7 @@ from mpm_verify.solver.state import Floats
 
 @kernel(RESPOND)
 def respond(constants, sigma, de, history):
-    """sigma += lam tr(de) I + 2 mu de; constants lam, mu."""
+    """Add lam tr(de) I + 2 mu de to sigma; constants lam, mu."""
     lam = constants[0]
     shear = 2.0 * constants[1]
     for b in range(sigma.shape[0] // 4):
@@ -29,7 +29,20 @@ def respond(constants, sigma, de, history):
 
 @dataclass(frozen=True)
 class Hypoelastic(RateMaterial, Elastic):
-    """Parameters E, nu, rho0 and the rate."""
+    """Hypoelastic solid, in rate form.
+
+    Parameters
+    ----------
+    rate
+        Objective rate, a file of solver/rates.
+    E, nu, rho0
+        Young's modulus and density above zero, Poisson's ratio between -1 and 0.5.
+
+    Raises
+    ------
+    ValueError
+        For a parameter that is out of range.
+    """
 
     respond = staticmethod(respond)
 
@@ -38,5 +51,5 @@ class Hypoelastic(RateMaterial, Elastic):
         RateMaterial.__post_init__(self)
 
     def constants(self) -> Floats:
-        """lam, mu."""
+        """Constants (2,): lam, mu."""
         return np.array([self.lam, self.mu])

@@ -1,8 +1,8 @@
 """Linear elasticity for small amplitudes: sigma = lam tr(e) I + 2 mu e, e = sym(F - I), plane strain.
 
 The energy gives the first Piola stress P = sigma, and Cauchy stress and P differ by terms of order amplitude squared.
-So this law is consistent with its energy to that order only: a study with it ends on a floor of the relative size of
-the strain. Use it at amplitudes of 1e-4 and below.
+So this material is consistent with its energy to that order only: a study with it ends on a floor of the relative size
+of the strain. Use it at amplitudes of 1e-4 and below.
 """
 
 from collections.abc import Callable
@@ -18,7 +18,7 @@ from mpm_verify.solver.state import Particles
 
 @kernel(nothing(F3, F2, f8, f8), parallel=True)
 def stress(F, sigma, lam, mu):
-    """Stress (P,4) of F (P,2,2)."""
+    """Write the stress (P,4) of F (P,2,2)."""
     for p in prange(F.shape[0]):
         exx = F[p, 0, 0] - 1.0
         eyy = F[p, 1, 1] - 1.0
@@ -31,14 +31,25 @@ def stress(F, sigma, lam, mu):
 
 @dataclass(frozen=True)
 class LinearElastic(Elastic):
-    """Parameters E, nu, rho0."""
+    """Linear elastic solid for small amplitudes.
+
+    Parameters
+    ----------
+    E, nu, rho0
+        Young's modulus and density above zero, Poisson's ratio between -1 and 0.5.
+
+    Raises
+    ------
+    ValueError
+        For a parameter that is out of range.
+    """
 
     def energy(self, F: Any, log: Callable[[Any], Any]) -> Any:
-        """W = lam/2 tr(e)^2 + mu e:e per initial volume; F is 3 x 3, of numbers or symbols."""
+        """Energy W = lam/2 tr(e)^2 + mu e:e per initial volume; F is 3 x 3, of numbers or symbols."""
         e = [[(F[i][j] + F[j][i]) / 2 - int(i == j) for j in range(3)] for i in range(3)]
         trace = e[0][0] + e[1][1] + e[2][2]
         return self.lam / 2 * trace**2 + self.mu * sum(e[i][j] ** 2 for i in range(3) for j in range(3))
 
     def update(self, particles: Particles, dt: float) -> None:
-        """Write particles.sigma."""
+        """Write particles.sigma (P,4)."""
         stress(particles.F, particles.sigma, self.lam, self.mu)

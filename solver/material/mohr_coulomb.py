@@ -3,9 +3,9 @@
 Principal stresses s1 >= s2 >= s3, tension positive, zz among them. Elastic states have
     f = k s1 - s3 - 2 c sqrt(k) <= 0   and   s1 <= sigma_t,   k = (1 + sin phi)/(1 - sin phi);
 flow is along (m, 0, -1), m = (1 + sin psi)/(1 - sin psi), on a plane of f, and associated on the cut-off. Directions of
-return are constant, so every region has its exact solution in one step (Clausen, Damkilde & Andersen 2007; de Souza
-Neto, Peric & Owen 2008, chapter 8). Which it is, `returned` finds by tests that each imply all that Koiter's rule asks
-for; what they leave, rounding included, belongs to the edge of plane and cut-off or to an end of it.
+return are constant, so every region has its exact solution in one step. Which it is, `returned` finds by tests that
+each imply all that Koiter's rule asks for; what they leave, rounding included, belongs to the edge of plane and cut-off
+or to an end of it.
 
 A cut-off above the apex c cot phi has no effect: it is put at the apex, where all corners of the cut-off meet. With
 psi > 0 the flow of the six planes reaches every state beyond the apex. With psi = 0 flow cannot change the pressure;
@@ -21,7 +21,7 @@ import numpy as np
 from mpm_verify.solver._jit import kernel
 from mpm_verify.solver.elastic import Elastic
 from mpm_verify.solver.objective import RESPOND
-from mpm_verify.solver.principal import advance_elastic, along, in_order, in_place
+from mpm_verify.solver.principal import advance_elastic, in_order, on_axes, unsorted
 from mpm_verify.solver.rate_material import RateMaterial
 from mpm_verify.solver.state import Floats
 from mpm_verify.solver.voids import check_void, close_void
@@ -29,11 +29,11 @@ from mpm_verify.solver.voids import check_void, close_void
 
 @kernel(inline=True)
 def returned(t1, t2, t3, f, constants):
-    """The admissible stress of a trial stress t1 >= t2 >= t3 that is not, f its excess.
+    """Admissible stress of a trial stress t1 >= t2 >= t3 that is not, f its excess.
 
-    p is the return to the plane, q to the cut-off, each as if it were alone. One sign says whether a neighbour flows
-    too: p1 < p2 that the plane of s2 and s3 does, q2 > sigma_t that the cut-off of s2 does; by the order of t the first
-    one then flows more. Tests of neighbours are complements of one another, so round-off leaves no gap between them.
+    p is the return to the plane, q to the cut-off, each as if it were alone. One sign says whether the next surface
+    flows too: p1 < p2 that the plane of s2 and s3 does, q2 > sigma_t that the cut-off of s2 does; by the order of t the
+    first one then flows more. Tests of adjacent regions are complements of one another, so round-off leaves no gap.
     """
     k, cohesive, tension, low = constants[2], constants[3], constants[4], constants[5]
     nu, cut = constants[6], t1 - tension
@@ -55,7 +55,7 @@ def returned(t1, t2, t3, f, constants):
         s1, s2, s3 = tension, q2, q3
     elif cut > 0.0 and q2 > tension and r3 >= low:  # edge of the cut-off, and its apex
         s1, s2, s3 = tension, tension, min(r3, tension)
-    else:  # edge of plane and cut-off: neither strains along 2; and its ends
+    else:  # edge of plane and cut-off: neither strains in direction 2; and its ends
         s2 = t2 - nu * (t1 + t3 - tension - low)
         s1, s2, s3 = tension, max(low, min(s2, tension)), low
     return s1, s2, s3
@@ -63,7 +63,7 @@ def returned(t1, t2, t3, f, constants):
 
 @kernel(RESPOND)
 def respond(constants, sigma, de, history):
-    """Elastic trial stress, and its return where it is not admissible; history gamma_p, eps_v_p, void.
+    """Write the elastic trial stress, or its return where it is not admissible; history gamma_p, eps_v_p, void.
 
     Two loops: the first has no branches and vectorises, roots included, which makes the whole faster by a half.
     """
@@ -83,9 +83,9 @@ def respond(constants, sigma, de, history):
             opens = constants[18] > 0.0 and s3 >= tension
             history[3 * b] += (t1 - s1 - t3 + s3) / shear
             history[3 * b + (2 if opens else 1)] += (t1 - s1 + t2 - s2 + t3 - s3) * constants[17]
-            finite = 0.0 * (xx + yy + zz + xy)  # corners are finite whatever comes in: a lost state stays lost
-            up, down, zz = in_place(s1 + finite, s2 + finite, s3 + finite, up, down, zz)
-            xx, yy, xy = along(up, down, xx, yy, xy, plane[3 * b + 2])
+            finite = 0.0 * (xx + yy + zz + xy)  # corners are finite whatever comes in: a state that is NaN stays so
+            up, down, zz = unsorted(s1 + finite, s2 + finite, s3 + finite, up, down, zz)
+            xx, yy, xy = on_axes(up, down, xx, yy, xy, plane[3 * b + 2])
             sigma[4 * b] = xx
             sigma[4 * b + 1] = yy
             sigma[4 * b + 2] = zz
@@ -94,15 +94,39 @@ def respond(constants, sigma, de, history):
 
 @dataclass(frozen=True)
 class MohrCoulomb(RateMaterial, Elastic):
-    """Parameters E, nu, rho0, the rate; angles phi and psi in degrees, c and the cut-off sigma_t in the unit of E.
-
-    Defaults are the sand of the paper's column collapse, in SI units. ValueError unless 0 < phi < 90 (for phi = 0
-    there is no apex), 0 <= psi <= phi and c, sigma_t >= 0. Without hardening, flow that contracts has no end and leaves
-    states around the apex without a return, so psi < 0 is refused.
+    """Mohr-Coulomb soil with a tension cut-off, in rate form; the defaults are the sand of the paper's column, in SI.
 
     The history holds gamma_p, the sum of the increments of e1 - e3 of the plastic strain, and eps_v_p, its volume,
-    positive where the soil dilates; with void=1 (see solver/voids.py) what opens at the apex is not in eps_v_p but in
-    the void strain, so that elastic volume + eps_v_p + void is the volume strain.
+    positive where the soil dilates; with void=1 what opens at the apex is not in eps_v_p but in the void strain, so
+    that elastic volume + eps_v_p + void is the volume strain.
+
+    Parameters
+    ----------
+    rate
+        Objective rate, a file of solver/rates.
+    E, nu, rho0
+        Young's modulus and density above zero, Poisson's ratio between -1 and 0.5.
+    phi
+        Angle of friction in degrees, 0 < phi < 90: for phi = 0 there is no apex.
+    psi
+        Angle of dilation in degrees, 0 <= psi <= phi: without hardening, flow that contracts has no end and leaves
+        states around the apex without a return.
+    c
+        Cohesion in the unit of E, zero or more.
+    sigma_t
+        Tension cut-off in the unit of E, zero or more.
+    void
+        1 with void-strain memory (solver/voids.py), which needs c = 0.
+
+    Raises
+    ------
+    ValueError
+        For a parameter that is out of range.
+
+    References
+    ----------
+    Clausen, Damkilde & Andersen 2007, doi:10.1016/j.compstruc.2007.04.002.
+    de Souza Neto, Peric & Owen 2008, doi:10.1002/9780470694626, chapter 8.
     """
 
     E: float = 840e3
@@ -132,11 +156,11 @@ class MohrCoulomb(RateMaterial, Elastic):
 
     @property
     def cohesion(self) -> float:
-        """Cohesion c."""
+        """Cohesion c, in the unit of E."""
         return self.c
 
     def constants(self) -> Floats:
-        """lam, 2 mu, strength, and the weights of trial stresses in the return to each region."""
+        """Constants (19,): lam, 2 mu, strength, and the weights of trial stresses in the return to each region."""
         nu, k, m = self.nu, slope(self.phi), slope(self.psi)
         cohesive = 2 * self.c * sqrt(k)
         apex = self.c / tan(radians(self.phi))
@@ -156,12 +180,12 @@ class MohrCoulomb(RateMaterial, Elastic):
 
 
 def slope(angle: float) -> float:
-    """(1 + sin)/(1 - sin) of an angle in degrees, written so that it is 1 for 0 and stays finite close to 90."""
+    """Slope (1 + sin)/(1 - sin) of an angle in degrees, so written that it is 1 for 0 and stays finite close to 90."""
     return ((1 + sin(radians(angle))) / cos(radians(angle))) ** 2
 
 
 def check_strength(phi: float, psi: float, c: float) -> None:
-    """Angles in degrees. Raises ValueError."""
+    """Raise ValueError for angles (degrees) or a cohesion that are out of range."""
     if not 0 < phi < 90:
         raise ValueError(f"phi = {phi} must lie between 0 and 90 degrees")
     if not 0 <= psi <= phi:

@@ -18,7 +18,7 @@ from mpm_verify.solver.state import Particles
 
 @kernel(nothing(F1, F1, f8, f8))
 def stress_block(F, sigma, lam, mu):
-    """Cauchy stress of a block, flat; logarithms in a loop of their own, so that the compiler vectorises the other."""
+    """Write the Cauchy stress of a block, flat; logarithms in a loop of their own, so that the other vectorises."""
     n = F.shape[0] // 4
     logJ = np.empty(BLOCK)
     for b in range(n):
@@ -39,7 +39,7 @@ def stress_block(F, sigma, lam, mu):
 
 @kernel(nothing(F3, F2, f8, f8), parallel=True)
 def stress(F, sigma, lam, mu):
-    """Cauchy stress (P,4) of F (P,2,2)."""
+    """Write the Cauchy stress (P,4) of F (P,2,2)."""
     Fs = F.reshape(-1)
     sigmas = sigma.reshape(-1)
     for block in prange((F.shape[0] + BLOCK - 1) // BLOCK):
@@ -50,10 +50,21 @@ def stress(F, sigma, lam, mu):
 
 @dataclass(frozen=True)
 class NeoHookean(Elastic):
-    """Parameters E, nu, rho0 as in the paper's section 2.1."""
+    """Compressible neo-Hookean solid; the defaults are those of the paper's section 2.1.
+
+    Parameters
+    ----------
+    E, nu, rho0
+        Young's modulus and density above zero, Poisson's ratio between -1 and 0.5.
+
+    Raises
+    ------
+    ValueError
+        For a parameter that is out of range.
+    """
 
     def energy(self, F: Any, log: Callable[[Any], Any]) -> Any:
-        """W per initial volume; F is 3 x 3, of numbers or symbols, `log` the logarithm for them."""
+        """Energy W per initial volume; F is 3 x 3, of numbers or symbols, `log` the logarithm for them."""
         determinant = (
             F[0][0] * (F[1][1] * F[2][2] - F[1][2] * F[2][1])
             - F[0][1] * (F[1][0] * F[2][2] - F[1][2] * F[2][0])
@@ -63,5 +74,5 @@ class NeoHookean(Elastic):
         return self.mu / 2 * (trace - 3) - self.mu * log(determinant) + self.lam / 2 * log(determinant) ** 2
 
     def update(self, particles: Particles, dt: float) -> None:
-        """Write particles.sigma."""
+        """Write particles.sigma (P,4)."""
         stress(particles.F, particles.sigma, self.lam, self.mu)

@@ -5,7 +5,7 @@ In the plane, compression positive: s the centre and t the radius of Mohr's circ
     yield     t = eta_m s',  eta_m the largest eta of the branch
     hardening d eta = (Gp/s') (1 - Rf eta/eta_f)^2 d gamma_p,  Gp = KGp Pa (s/Pa)^np,  eta <= eta_f = sin phi_f
     flow      d eps_v_p = (eta - eta_cv) d gamma_p, eta_cv = sin phi_pt: it contracts below eta_cv (dilation positive)
-The plane alone yields, as in the two-dimensional programs that the law comes from; zz follows (see `out_of_range`).
+The plane alone yields, as in the two-dimensional programs that the model comes from; zz follows (see `out_of_range`).
 Every modulus is that of the middle of the step, found by passes; hardening is integrated exactly, q = eta/(1 - a eta)
 growing by k d gamma_p with a = Rf/eta_f, k = Gp/s', so that a pass ends in a quadratic equation; the flow has the mean
 eta of the slip. Slip is along the axes of stress in the middle of the plastic part of the step: along those of its end,
@@ -13,7 +13,7 @@ as radial returns have it, turning axes (simple shear) cost an order. So of orde
 
 Beyond the cut-off (s <= -sigma_t) all stresses vanish and eta_m is forgotten: what touches again loads as if new.
 
-With reversal=1, **our reading** of the cyclic law's cross-over, whose rules are not public: where the shear stress on
+With reversal=1, **our reading** of the cyclic model's cross-over, whose rules are not public: where the shear stress on
 the material's horizontal plane changes its sign, a new branch starts at the eta that is mobilised there, with a plastic
 stiffness times hfac1 hfac2 (4 + n/2) min(1, max(1/2, N/10)), n the number of reversals, N = (N1)60. It needs the
 material's own axes, hence the rate green_naghdi. Without it hfac1 to hfac6 are stored and have no effect: they belong
@@ -36,14 +36,14 @@ from mpm_verify.solver.voids import check_void, close_void
 
 PASSES = 3
 CLOSE = 0.8  # cosine between the axes of the middle and of the end; beyond it the return is radial
-NOISE = 1e-9  # of s: a shear stress below it is none, and cannot change its sign
-SETTLED = 1e-12  # of s: an elastic step need not be passed again
+NOISE = 1e-9  # fraction of s: a shear stress below it is none, and cannot change its sign
+SETTLED = 1e-12  # fraction of s: below it an elastic step need not be passed again
 MEMORY = ("eta_m", "gamma_p", "eps_v_p", "work_p", "reversals", "detached", "void")
 
 
 @kernel(RESPOND)
 def respond(constants, sigma, de, history):
-    """Stress and history at the end of the step; constants as in `Ubcsand.constants`."""
+    """Write stress and history at the end of the step; constants as in `Ubcsand.constants`."""
     Ge, ne, Ke, me, Gp, n_p = constants[0], constants[1], constants[2], constants[3], constants[4], constants[5]
     a, eta_f, eta_cv, per_Pa, s_min = constants[6], constants[7], constants[8], constants[9], constants[10]
     shift, cut, reversal, secondary = constants[11], constants[12], constants[13], constants[14]
@@ -81,12 +81,12 @@ def respond(constants, sigma, de, history):
             t = np.sqrt(half * half + nxy * nxy)
             memory = eta_m
             stiffer = 1.0
-            share = 0.0
+            onset_at = 0.0  # fraction of the way from the old stress to the trial
             crossed = reversal > 0.0 and xy * nxy < 0.0 and abs(xy) > NOISE * (start + shift)
             if crossed:  # eta where the shear stress vanishes, on the way from the old stress to the trial
-                share = xy / (xy - nxy)
-                memory = abs(half0 * (1.0 - share) + half * share)
-                memory = min(memory / (start + (trial - start) * share + shift), eta_f)
+                onset_at = xy / (xy - nxy)
+                memory = abs(half0 * (1.0 - onset_at) + half * onset_at)
+                memory = min(memory / (start + (trial - start) * onset_at + shift), eta_f)
                 eta_mid = memory if L == 0.0 else eta_mid
             if reversal > 0.0 and turns + crossed > 0.0:
                 stiffer = secondary * (4.0 + 0.5 * (turns + crossed))
@@ -95,10 +95,10 @@ def respond(constants, sigma, de, history):
             ends = memory
             eta = t / (trial + shift)
             if not (trial <= cut) and not (t <= memory * (trial + shift)):
-                share = share if crossed else onset(memory, half0, xy, start + shift, half, nxy, trial + shift)
-                x_on = half0 + share * (half - half0)
-                y_on = xy + share * (nxy - xy)
-                radius = nx * half + ny * nxy  # along the new axes; slip along those of the middle shortens it by G_n
+                onset_at = onset_at if crossed else onset(memory, half0, xy, start + shift, half, nxy, trial + shift)
+                x_on = half0 + onset_at * (half - half0)
+                y_on = xy + onset_at * (nxy - xy)
+                radius = nx * half + ny * nxy  # on the new axes; slip on those of the middle shortens it by G_n
                 if not (nx * mx + ny * my > CLOSE and radius > memory * (trial + shift)):  # a first pass, a large step
                     nx, ny, mx, my, radius = half / t, nxy / t, half / t, nxy / t, t
                 D = eta_cv - eta_mid
@@ -126,7 +126,7 @@ def respond(constants, sigma, de, history):
             if L == 0.0 and abs(s_mid - before) <= SETTLED * middle:
                 break
         if s <= cut:
-            nothing = 0.0 * (nxx + nyy + nzz + nxy)  # a lost state stays lost
+            nothing = 0.0 * (nxx + nyy + nzz + nxy)  # a state that is NaN stays so
             sigma[4 * b] = nothing
             sigma[4 * b + 1] = nothing
             sigma[4 * b + 2] = nothing
@@ -153,15 +153,45 @@ def respond(constants, sigma, de, history):
 
 @dataclass(frozen=True)
 class Ubcsand(RateMaterial):
-    """The paper's Table 2: numbers KGe, KBe, KGp with exponents ne, me, np, angles phi_f, phi_pt in degrees, SI units.
-
-    Rf is not in that table, and decides how soon the strength is mobilised; the default is the generic correlation
-    1.1 N^-0.15 at N = (N1)60 = 10.7. `s_min`: s in the moduli is at least this, in units of Pa. `s_bound`: the largest
-    s that a run is meant to reach, for its time step alone (`wave_speed`), as the moduli have no limit.
-    Raises ValueError for what is out of range.
+    """UBCSAND, in rate form; the defaults are the paper's Table 2, SI units.
 
     History: eta_m; gamma_p, plastic e1 - e3, summed; eps_v_p, its volume, dilation positive; work_p, plastic work per
-    volume; the number of reversals; how often the particle was detached; with void=1 the void strain (solver/voids.py).
+    volume; the number of reversals; how often the particle was detached; with void=1 the void strain.
+
+    Parameters
+    ----------
+    rate
+        Objective rate, a file of solver/rates.
+    KGe, ne, KBe, me, KGp, np
+        Numbers and exponents of the shear, the bulk and the plastic modulus.
+    phi_f, phi_pt
+        Angles of failure and of constant volume in degrees.
+    c, sigma_t
+        Cohesion and tension cut-off, stresses, zero or more.
+    Pa
+        Atmospheric pressure, in the unit of stress.
+    N
+        Blow count (N1)60.
+    Rf
+        Failure ratio, which decides how soon the strength is mobilised. Rf is not in that table; the default is
+        the generic correlation 1.1 N^-0.15 at N = 10.7.
+    hfac1, hfac2, hfac3, hfac4, hfac5, hfac6
+        Factors of cyclic loading; with reversal=1 the first two act, the others have no effect.
+    s_min
+        Least s in the moduli, in units of Pa.
+    s_bound
+        Largest s that a run is meant to reach, for its time step alone (`wave_speed`), as the moduli have no limit.
+    rho0
+        Density at reference.
+    reversal
+        1 with a new branch at each reversal, which needs the rate green_naghdi.
+    void
+        1 with void-strain memory (solver/voids.py), which needs c = 0.
+
+    Raises
+    ------
+    ValueError
+        For a parameter that is out of range.
     """
 
     KGe: float = 100.0
@@ -204,7 +234,7 @@ class Ubcsand(RateMaterial):
 
     @property
     def cohesion(self) -> float:
-        """Cohesion c."""
+        """Cohesion c, a stress."""
         return self.c
 
     @property
@@ -219,16 +249,16 @@ class Ubcsand(RateMaterial):
 
     @property
     def shift(self) -> float:
-        """c cot phi_f."""
+        """Shift c cot phi_f of s, a stress."""
         return self.c / tan(radians(self.phi_f))
 
     def moduli(self, s: float) -> tuple[float, float]:
-        """G and K at the in-plane mean stress s, compression positive."""
-        share = max(s / self.Pa, self.s_min)
-        return self.KGe * self.Pa * share**self.ne, self.KBe * self.Pa * share**self.me
+        """Shear modulus G and bulk modulus K at the mean stress s in the plane, compression positive."""
+        ratio = max(s / self.Pa, self.s_min)
+        return self.KGe * self.Pa * ratio**self.ne, self.KBe * self.Pa * ratio**self.me
 
     def constants(self) -> Floats:
-        """What the kernel reads, in its order."""
+        """Constants (16,) in the order in which the kernel reads them."""
         secondary = self.hfac1 * self.hfac2 * min(1.0, max(0.5, 0.1 * self.N))
         return np.array(
             [self.KGe * self.Pa, self.ne, self.KBe * self.Pa, self.me, self.KGp * self.Pa, self.np,
@@ -237,7 +267,7 @@ class Ubcsand(RateMaterial):
         )  # fmt: skip
 
     def initial(self, sigma: Floats) -> Floats:
-        """eta_m is what the stress mobilises, at most eta_f; nothing else has happened."""
+        """History (P,7) with the eta_m that sigma (P,4) mobilises, at most eta_f; nothing else has happened."""
         history = np.zeros((len(sigma), len(MEMORY)))
         s = -(sigma[:, 0] + sigma[:, 1]) / 2 + self.shift
         t = np.hypot((sigma[:, 0] - sigma[:, 1]) / 2, sigma[:, 3])
@@ -245,43 +275,47 @@ class Ubcsand(RateMaterial):
         return history
 
     def wave_speed(self, s: float | None = None) -> float:
-        """Compression wave sqrt((K + 4G/3)/rho0) at s, s_bound if it is left out."""
+        """Speed of the compression wave, sqrt((K + 4G/3)/rho0), at the mean stress s, s_bound if it is left out."""
         G, K = self.moduli(self.s_bound if s is None else s)
         return sqrt((K + 4 / 3 * G) / self.rho0)
 
 
 def out_of_range(sigma: Floats) -> NDArray[np.bool_]:
-    """Whether zz (P,) leaves the range of the principal stresses in the plane, where a three-dimensional law would
-    yield on other planes than this one."""
+    """Whether zz of sigma (P,4) leaves the range of the principal stresses in the plane, (P,).
+
+    There a three-dimensional model would yield on other planes than this one.
+    """
     centre = (sigma[:, 0] + sigma[:, 1]) / 2
     radius = np.hypot((sigma[:, 0] - sigma[:, 1]) / 2, sigma[:, 3])
     outside: NDArray[np.bool_] = np.abs(sigma[:, 2] - centre) > radius * (1 + 1e-12)
     return outside
 
 
-def check(law: Ubcsand) -> None:
-    """Raises ValueError with what is allowed."""
-    for item in fields(law):
-        value = getattr(law, item.name)
+def check(sand: Ubcsand) -> None:
+    """Raise ValueError with what is allowed."""
+    for item in fields(sand):
+        value = getattr(sand, item.name)
         if item.name != "rate" and not isfinite(value):
             raise ValueError(f"{item.name} = {value} must be finite")
     for name in ("KGe", "KBe", "KGp", "Pa", "N", "s_min", "s_bound", "rho0"):
-        if not getattr(law, name) > 0:
-            raise ValueError(f"{name} = {getattr(law, name)} must be above zero")
+        if not getattr(sand, name) > 0:
+            raise ValueError(f"{name} = {getattr(sand, name)} must be above zero")
     for name in ("ne", "me", "np"):
-        if not 0 <= getattr(law, name) <= 1:
-            raise ValueError(f"{name} = {getattr(law, name)} must lie between 0 and 1")
-    if not 0 < law.phi_pt <= law.phi_f < 90:
-        raise ValueError(f"phi_pt = {law.phi_pt} must lie above 0 and not above phi_f = {law.phi_f}, below 90 degrees")
-    if not 0 <= law.Rf < 1:
-        raise ValueError(f"Rf = {law.Rf} must lie from 0 to below 1")
-    worst = max((K / G + 1 / 3) * law.eta_cv**2 / 4 for G, K in map(law.moduli, (law.s_min * law.Pa, law.s_bound)))
+        if not 0 <= getattr(sand, name) <= 1:
+            raise ValueError(f"{name} = {getattr(sand, name)} must lie between 0 and 1")
+    if not 0 < sand.phi_pt <= sand.phi_f < 90:
+        raise ValueError(
+            f"phi_pt = {sand.phi_pt} must lie above 0 and not above phi_f = {sand.phi_f}, below 90 degrees"
+        )
+    if not 0 <= sand.Rf < 1:
+        raise ValueError(f"Rf = {sand.Rf} must lie from 0 to below 1")
+    worst = max((K / G + 1 / 3) * sand.eta_cv**2 / 4 for G, K in map(sand.moduli, (sand.s_min * sand.Pa, sand.s_bound)))
     if worst >= 1:
         raise ValueError(f"K/G must leave (K/G + 1/3) sin^2(phi_pt)/4 below 1, not {worst:.3g}: no step would end")
-    if not (0 <= law.c < inf and 0 <= law.sigma_t < inf):
-        raise ValueError(f"c = {law.c} and sigma_t = {law.sigma_t} must be zero or more")
-    check_void(law.void, law.c)
-    if law.reversal not in (0, 1):
-        raise ValueError(f"reversal = {law.reversal} must be 0 or 1")
-    if law.reversal and law.rate != "green_naghdi":
-        raise ValueError(f"reversal=1 must have rate=green_naghdi, the material's own axes, not {law.rate}")
+    if not (0 <= sand.c < inf and 0 <= sand.sigma_t < inf):
+        raise ValueError(f"c = {sand.c} and sigma_t = {sand.sigma_t} must be zero or more")
+    check_void(sand.void, sand.c)
+    if sand.reversal not in (0, 1):
+        raise ValueError(f"reversal = {sand.reversal} must be 0 or 1")
+    if sand.reversal and sand.rate != "green_naghdi":
+        raise ValueError(f"reversal=1 must have rate=green_naghdi, the material's own axes, not {sand.rate}")

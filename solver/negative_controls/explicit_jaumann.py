@@ -1,4 +1,4 @@
-"""The Jaumann rate by an explicit step: sigma + (W sigma - sigma W) dt + C : D dt.
+"""Jaumann rate by an explicit step: sigma + (W sigma - sigma W) dt + C : D dt.
 
 First order in time, and the stress grows in a rotation without strain: its deviator by 2 (w dt)^2 a step.
 """
@@ -12,7 +12,7 @@ from mpm_verify.solver.objective import ROTATE, UNROTATE, Rate
 
 @kernel(UNROTATE)
 def unrotate(F0, F1, sigma, de):
-    """sigma <- sigma + (W sigma - sigma W) dt; de = D dt."""
+    """Write sigma + (W sigma - sigma W) dt to sigma, and D dt to de."""
     for b in range(sigma.shape[0] // 4):
         _, Lxy, Lyx, _ = step_gradient(b, F0, F1)
         w = 0.5 * (Lyx - Lxy)
@@ -25,11 +25,11 @@ def unrotate(F0, F1, sigma, de):
 
 @kernel(ROTATE)
 def rotate(F0, F1, sigma):
-    """Nothing: the stress is where the end of the step is."""
+    """Do nothing: the stress is where the end of the step is."""
 
 
 class ExplicitJaumann(Rate):
-    """Spin by one explicit step."""
+    """Jaumann rate whose spin acts by one explicit step."""
 
     order: ClassVar[float] = 1.0
     unrotate = staticmethod(unrotate)

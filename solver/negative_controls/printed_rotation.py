@@ -1,4 +1,4 @@
-"""The printed formulas with R in place of F: R0^T sigma R0, the law, then R1^T sigma R1.
+"""Printed formulas with R in place of F: R0^T sigma R0, the material, then R1^T sigma R1.
 
 The stretch is out of it, and the second rotation still has the wrong sense. It does not converge.
 """
@@ -12,7 +12,7 @@ from mpm_verify.solver.objective import ROTATE, UNROTATE, Rate
 
 @kernel(UNROTATE)
 def unrotate(F0, F1, sigma, de):
-    """sigma <- R0^T sigma R0; de = R0^T (D dt) R0."""
+    """Write R0^T sigma R0 to sigma, and R0^T (D dt) R0 to de."""
     for b in range(sigma.shape[0] // 4):
         c, s = rotation_of(b, F0)
         turn_stress(b, sigma, c, -s)
@@ -21,14 +21,14 @@ def unrotate(F0, F1, sigma, de):
 
 @kernel(ROTATE)
 def rotate(F0, F1, sigma):
-    """sigma <- R1^T sigma R1."""
+    """Write R1^T sigma R1 to sigma."""
     for b in range(sigma.shape[0] // 4):
         c, s = rotation_of(b, F1)
         turn_stress(b, sigma, c, -s)
 
 
 class PrintedRotation(Rate):
-    """R transposed at both ends."""
+    """Rate with R transposed at both ends."""
 
     order: ClassVar[float] = 0.0
     unrotate = staticmethod(unrotate)

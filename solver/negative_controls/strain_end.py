@@ -12,7 +12,7 @@ from mpm_verify.solver.objective import ROTATE, UNROTATE, Rate
 
 @kernel(UNROTATE)
 def unrotate(F0, F1, sigma, de):
-    """sigma <- R0^T sigma R0; de = R1^T (D dt) R1."""
+    """Write R0^T sigma R0 to sigma, and R1^T (D dt) R1 to de."""
     for b in range(sigma.shape[0] // 4):
         c, s = rotation_of(b, F0)
         turn_stress(b, sigma, c, -s)
@@ -22,14 +22,14 @@ def unrotate(F0, F1, sigma, de):
 
 @kernel(ROTATE)
 def rotate(F0, F1, sigma):
-    """sigma <- R1 sigma R1^T."""
+    """Write R1 sigma R1^T to sigma."""
     for b in range(sigma.shape[0] // 4):
         c, s = rotation_of(b, F1)
         turn_stress(b, sigma, c, s)
 
 
 class StrainEnd(Rate):
-    """D turned by the rotation of the end."""
+    """Green-Naghdi rate with D turned by the rotation of the end."""
 
     order: ClassVar[float] = 1.0
     unrotate = staticmethod(unrotate)

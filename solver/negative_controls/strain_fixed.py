@@ -12,7 +12,7 @@ from mpm_verify.solver.objective import ROTATE, UNROTATE, Rate
 
 @kernel(UNROTATE)
 def unrotate(F0, F1, sigma, de):
-    """sigma <- q sigma q^T; de = D dt."""
+    """Write q sigma q^T to sigma, and D dt to de."""
     for b in range(sigma.shape[0] // 4):
         _, Lxy, Lyx, _ = step_gradient(b, F0, F1)
         c, s = half_turn(0.5 * (Lyx - Lxy))
@@ -22,11 +22,11 @@ def unrotate(F0, F1, sigma, de):
 
 @kernel(ROTATE)
 def rotate(F0, F1, sigma):
-    """Nothing: the stress is where the end of the step is."""
+    """Do nothing: the stress is where the end of the step is."""
 
 
 class StrainFixed(Rate):
-    """D not turned."""
+    """Jaumann rate with D not turned."""
 
     order: ClassVar[float] = 1.0
     unrotate = staticmethod(unrotate)

@@ -1,8 +1,8 @@
-"""Green-Naghdi rate: the law works in the frame that turns with R of F = R U (Kamojjala & Brannon 2011).
+"""Green-Naghdi rate: the material works in the frame that turns with R of F = R U (Kamojjala & Brannon 2011).
 
 The stress is unrotated by R at the start of the step, D by R in its middle, and the new stress is rotated by R at its
 end. That is what the paper's section 2.2 means; what its formulas say is in solver/negative_controls. The frame is the
-material's own, so a law may tell its axes apart. Second order in time, as all rates here (tests/test_rates.py).
+material's own, so it may tell its axes apart. Second order in time, as all rates here (tests/test_rates.py).
 """
 
 from typing import ClassVar
@@ -14,7 +14,7 @@ from mpm_verify.solver.objective import ROTATE, UNROTATE, Rate
 
 @kernel(UNROTATE)
 def unrotate(F0, F1, sigma, de):
-    """sigma <- R0^T sigma R0; de = Rm^T (D dt) Rm."""
+    """Write R0^T sigma R0 to sigma, and Rm^T (D dt) Rm to de."""
     for b in range(sigma.shape[0] // 4):
         c, s = rotation_of(b, F0)
         turn_stress(b, sigma, c, -s)
@@ -24,14 +24,19 @@ def unrotate(F0, F1, sigma, de):
 
 @kernel(ROTATE)
 def rotate(F0, F1, sigma):
-    """sigma <- R1 sigma R1^T."""
+    """Write R1 sigma R1^T to sigma."""
     for b in range(sigma.shape[0] // 4):
         c, s = rotation_of(b, F1)
         turn_stress(b, sigma, c, s)
 
 
 class GreenNaghdi(Rate):
-    """Polar rotation."""
+    """Green-Naghdi rate, by the polar rotation.
+
+    References
+    ----------
+    Green & Naghdi 1965, doi:10.1007/BF00251666.
+    """
 
     order: ClassVar[float] = 2.0
     unrotate = staticmethod(unrotate)

@@ -3,7 +3,7 @@
 Its spin is W - f D12 in the plane, D12 the shear of D between the axes n1, n2 of B = F F^T, b1 and b2 its eigenvalues,
 f = (1 + r)/(1 - r) + 2/ln r with r = b1/b2. With m and d the mean and half the difference of b1 and b2 and z = d/m this
 is f = 1/atanh z - 1/z, and f D12 = [(z/atanh z - 1)/z^2] [Bxy (Dyy - Dxx) + (Bxx - Byy) Dxy] / (2 m): no axes needed,
-and smooth where b1 = b2. All of the middle of the step; the rotation by the spin as in jaumann.py.
+and smooth where b1 = b2. All is that of the middle of the step; the rotation by the spin as in jaumann.py.
 """
 
 from typing import ClassVar
@@ -17,7 +17,7 @@ from mpm_verify.solver.objective import ROTATE, UNROTATE, Rate
 
 @kernel(inline=True)
 def bend(z):
-    """(z/atanh z - 1)/z^2; by its series where the difference would lose digits."""
+    """Factor (z/atanh z - 1)/z^2; by its series where the difference would lose digits."""
     zz = z * z
     if z < 0.05:
         return -1.0 / 3.0 - zz * (4.0 / 45.0 + zz * (44.0 / 945.0 + zz * (428.0 / 14175.0 + zz * (10196.0 / 467775.0))))
@@ -44,7 +44,7 @@ def spin(b, F0, F1):
 
 @kernel(UNROTATE)
 def unrotate(F0, F1, sigma, de):
-    """sigma turned by half the step's rotation; de = D dt."""
+    """Turn sigma by half the step's rotation, and write D dt to de."""
     for b in range(sigma.shape[0] // 4):
         c, s = half_turn(spin(b, F0, F1))
         turn_stress(b, sigma, c, s)
@@ -53,14 +53,19 @@ def unrotate(F0, F1, sigma, de):
 
 @kernel(ROTATE)
 def rotate(F0, F1, sigma):
-    """sigma turned by the other half."""
+    """Turn sigma by the other half."""
     for b in range(sigma.shape[0] // 4):
         c, s = half_turn(spin(b, F0, F1))
         turn_stress(b, sigma, c, s)
 
 
 class Logarithmic(Rate):
-    """Logarithmic spin."""
+    """Logarithmic rate, by its spin.
+
+    References
+    ----------
+    Xiao, Bruhns & Meyers 1997, doi:10.1007/BF01213020.
+    """
 
     order: ClassVar[float] = 2.0
     unrotate = staticmethod(unrotate)

@@ -1,8 +1,8 @@
 """Truesdell rate: the stress is carried by F itself, as the second Piola stress J F^-1 sigma F^-T stays the same.
 
-From the start to the middle of the step by A = Fm F0^-1, sigma <- A sigma A^T / det A, there the law with D dt, then to
-the end by F1 Fm^-1. Stretch changes the stress too, and not only its axes: a law with a yield surface gets a stress
-that has left it, elastically, by what the step stretches. So it is here to be compared with, not for soils.
+From the start to the middle of the step by A = Fm F0^-1, sigma <- A sigma A^T / det A, there the material with D dt,
+then to the end by F1 Fm^-1. Stretch changes the stress too, and not only its axes: a material with a yield surface gets
+a stress that has left it, elastically, by what the step stretches. So it is here to be compared with, not for soils.
 """
 
 from typing import ClassVar
@@ -14,7 +14,7 @@ from mpm_verify.solver.objective import ROTATE, UNROTATE, Rate
 
 @kernel(inline=True)
 def carry(b, sigma, Axx, Axy, Ayx, Ayy, Bxx, Bxy, Byx, Byy):
-    """sigma <- G sigma G^T / det G, G = B A^-1; zz / det G."""
+    """Write G sigma G^T / det G to sigma, G = B A^-1; zz / det G."""
     J = Axx * Ayy - Axy * Ayx
     per = 1.0 / J
     push_stress(
@@ -25,7 +25,7 @@ def carry(b, sigma, Axx, Axy, Ayx, Ayy, Bxx, Bxy, Byx, Byy):
 
 @kernel(UNROTATE)
 def unrotate(F0, F1, sigma, de):
-    """To the middle of the step; de = D dt."""
+    """Carry sigma to the middle of the step, and write D dt to de."""
     for b in range(sigma.shape[0] // 4):
         xx, xy, yx, yy = F0[4 * b], F0[4 * b + 1], F0[4 * b + 2], F0[4 * b + 3]
         carry(
@@ -37,7 +37,7 @@ def unrotate(F0, F1, sigma, de):
 
 @kernel(ROTATE)
 def rotate(F0, F1, sigma):
-    """From the middle of the step to its end."""
+    """Carry sigma from the middle of the step to its end."""
     for b in range(sigma.shape[0] // 4):
         xx, xy, yx, yy = F1[4 * b], F1[4 * b + 1], F1[4 * b + 2], F1[4 * b + 3]
         carry(
@@ -47,7 +47,7 @@ def rotate(F0, F1, sigma):
 
 
 class Truesdell(Rate):
-    """Convected by F."""
+    """Truesdell rate: the stress is convected by F."""
 
     order: ClassVar[float] = 2.0
     unrotate = staticmethod(unrotate)

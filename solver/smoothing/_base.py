@@ -1,9 +1,9 @@
-"""What smoothing is: the strain that the law sees and the stress of the internal force, projected in parts.
+"""Contract of smoothing: the strain that the material sees and the stress of the internal force, projected in parts.
 
-Three-field (Hu-Washizu) mixed form with discontinuous rates and stresses, after Mast, Mackenzie-Helnwein, Arduino,
-Miller & Shin, J. Comput. Phys. 231 (2012) 5351. In the plane a tensor has a volumetric part (xx + yy)/2 and a
-deviatoric part ((xx - yy)/2, xy); so a smoothed strain stays plane, and rate and stress projections are adjoint. zz is
-not in any force and stays as it is. F, domains and volumes move with the velocities as they are.
+Three-field (Hu-Washizu) mixed form with discontinuous rates and stresses, after Mast et al. 2012. In the plane a tensor
+has a volumetric part (xx + yy)/2 and a deviatoric part ((xx - yy)/2, xy); so a smoothed strain stays plane, and rate
+and stress projections are adjoint. zz is not in any force and stays as it is. F, domains and volumes move with the
+velocities as they are.
 """
 
 from dataclasses import dataclass
@@ -25,10 +25,32 @@ RATES = ("green_naghdi", "jaumann")  # their rotations are those of F; a stretch
 
 @dataclass(frozen=True)
 class Smoothing:
-    """`of`: rate, stress or both; `where`: cell or node; `beta`: share of the projection, the rest is unprojected.
+    """Smoothing of rates and stresses; subclasses choose the parts.
 
-    `into`: force, where the smoothed stress acts at the nodes alone, or history, where the law goes on from it too.
-    Raises ValueError for other words, and unless 0 < beta <= 1.
+    Parameters
+    ----------
+    of
+        What is smoothed: ``rate``, ``stress`` or ``both``.
+    where
+        Projection: ``cell``, the mean of a cell, or ``node``, through nodes and back.
+    beta
+        Fraction of the projection, 0 < beta <= 1; the rest is unprojected.
+    into
+        ``force``: the smoothed stress acts at the nodes alone; ``history``: the material goes on from it too.
+
+    Attributes
+    ----------
+    volumetric, deviatoric
+        Which parts are smoothed.
+
+    Raises
+    ------
+    ValueError
+        For another word or beta.
+
+    References
+    ----------
+    Mast, Mackenzie-Helnwein, Arduino, Miller & Shin 2012, doi:10.1016/j.jcp.2012.04.032.
     """
 
     of: Of = "both"
@@ -53,10 +75,10 @@ class Smoothing:
     def check(self, material: Material) -> None:
         """Raise ValueError for a material that cannot be smoothed."""
         if material.rate not in RATES:
-            raise ValueError(f"smoothing must have a law in rate form with a rate of {', '.join(RATES)}")
+            raise ValueError(f"smoothing must have a material in rate form with a rate of {', '.join(RATES)}")
 
     def stress(self, context: Context) -> None:
-        """Write particles.sigma_smoothed, the stress of the internal force, at the start of a step."""
+        """Write particles.sigma_smoothed (P,4), the stress of the internal force, at the start of a step."""
         p = context.particles
         if self.of == "rate":
             return
@@ -68,14 +90,14 @@ class Smoothing:
             p.sigma_smoothed = smoothed
 
     def strain(self, context: Context, x: Floats) -> Floats | None:
-        """F (P,2,2) of the strain that the law is to see, at the end of a step that began at x (P,2)."""
+        """F (P,2,2) whose strain the material is to see, at the end of a step that began at x (P,2); None for F."""
         p = context.particles
         if self.of == "stress":
             return None
-        motion, F_smoothed = np.empty((len(p), 4)), np.empty_like(p.F)
-        strains(p.F_old, p.F, motion)
-        motion[:, :3] = self.smooth(context, x, motion[:, :3])
-        strained(p.F_old, motion, F_smoothed)
+        increments, F_smoothed = np.empty((len(p), 4)), np.empty_like(p.F)
+        strains(p.F_old, p.F, increments)
+        increments[:, :3] = self.smooth(context, x, increments[:, :3])
+        strained(p.F_old, increments, F_smoothed)
         return F_smoothed
 
     def smooth(self, context: Context, x: Floats, tensor: Floats) -> Floats:
@@ -87,10 +109,10 @@ class Smoothing:
         return np.stack([parts[:, 0] + parts[:, 1], parts[:, 0] - parts[:, 1], parts[:, 2]], axis=1)
 
     def project(self, context: Context, x: Floats, values: Floats) -> Floats:
-        """Projected values (P,C), by the volumes of the start of the step. Raises RunFailed outside the grid."""
+        """Project values (P,C), by the volumes of the start of the step. Raises RunFailed outside the grid."""
         g, out = context.grid, np.empty_like(values)
-        place = (x - g.origin) / g.dx
-        inside = ((place >= 0) & (place < (g.nx - 1, g.ny - 1))).all(axis=1)  # NaN is not
+        s = (x - g.origin) / g.dx
+        inside = ((s >= 0) & (s < (g.nx - 1, g.ny - 1))).all(axis=1)  # NaN is not
         if not inside.all():
             fail(context, int(np.flatnonzero(~inside)[0]), FailureKind.OUTSIDE_GRID)
         nodes = self.where == "node"
@@ -99,7 +121,7 @@ class Smoothing:
 
 
 def volumes(particles: Particles) -> Floats:
-    """V0 det F_old (P,)."""
+    """Volumes V0 det F_old (P,) at the start of the step."""
     F: Floats = particles.F_old
     V: Floats = particles.V0 * (F[:, 0] * F[:, 3] - F[:, 1] * F[:, 2])
     return V

@@ -14,7 +14,7 @@ from mpm_verify.solver._jit import F1, F2, F3, f8, flag, i8, kernel, nothing
 
 @kernel(nothing(F2, F1, F2, F1, f8, i8, i8, flag, F2))
 def project(x, V, values, origin, inv_dx, nx, ny, nodes, out):
-    """out (P,C): projected values (P,C) of particles at x (P,2) with volumes V (P,)."""
+    """Write the projected values (P,C) of particles at x (P,2) with volumes V (P,) to `out` (P,C)."""
     count, columns = values.shape
     sums = np.zeros((nx * ny, columns))
     volume = np.zeros(nx * ny)
@@ -46,7 +46,7 @@ def project(x, V, values, origin, inv_dx, nx, ny, nodes, out):
 
 @kernel(nothing(F2, F3, F2))
 def strains(F_old, F, out):
-    """Strain increments of the middle of the step xx, yy, xy, and the spin, (P,4); F_old (P,4), F (P,2,2)."""
+    """Write the strain increments of the middle of the step xx, yy, xy, and the spin, (P,4); F_old (P,4), F (P,2,2)."""
     for p in range(F.shape[0]):
         axx, axy = 0.5 * (F_old[p, 0] + F[p, 0, 0]), 0.5 * (F_old[p, 1] + F[p, 0, 1])
         ayx, ayy = 0.5 * (F_old[p, 2] + F[p, 1, 0]), 0.5 * (F_old[p, 3] + F[p, 1, 1])
@@ -62,11 +62,11 @@ def strains(F_old, F, out):
 
 
 @kernel(nothing(F2, F2, F3))
-def strained(F_old, motion, out):
-    """The F (P,2,2) that strain increments and spins (P,4) make of F_old: (I - A/2)^-1 (I + A/2) F_old."""
+def strained(F_old, increments, out):
+    """Write the F (P,2,2) that strain increments and spins (P,4) make of F_old: (I - A/2)^-1 (I + A/2) F_old."""
     for p in range(out.shape[0]):
-        xx, yy = 0.5 * motion[p, 0], 0.5 * motion[p, 1]
-        xy, yx = 0.5 * (motion[p, 2] + motion[p, 3]), 0.5 * (motion[p, 2] - motion[p, 3])
+        xx, yy = 0.5 * increments[p, 0], 0.5 * increments[p, 1]
+        xy, yx = 0.5 * (increments[p, 2] + increments[p, 3]), 0.5 * (increments[p, 2] - increments[p, 3])
         per = 1.0 / ((1.0 - xx) * (1.0 - yy) - xy * yx)
         cxx = per * ((1.0 - yy) * (1.0 + xx) + xy * yx)  # the Cayley transform of A
         cxy = per * 2.0 * xy

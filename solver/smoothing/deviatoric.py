@@ -11,6 +11,6 @@ from mpm_verify.solver.smoothing._base import Smoothing
 
 @dataclass(frozen=True)
 class Deviatoric(Smoothing):
-    """Parameters as in solver/smoothing/_base.py."""
+    """Deviatoric smoothing; parameters as of Smoothing."""
 
     deviatoric: ClassVar[bool] = True

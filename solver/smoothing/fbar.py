@@ -1,8 +1,6 @@
-"""F-bar: the law sees F with the volume ratio of the step projected, (dJ_mean/dJ)^(1/2) F, the exponent of the plane.
+"""F-bar: the material sees F with the projected volume ratio of the step, (dJ_mean/dJ)^(1/2) F, exponent of the plane.
 
-For comparison with volumetric smoothing, whose finite form it is: of the rate alone. Sources: Coombs et al., Comput.
-Methods Appl. Mech. Eng. 333 (2018) 466, stress from F-bar; Zhao, Jiang & Choo, Comput. Methods Appl. Mech. Eng. 402
-(2022) 115255, volume ratios through nodes, the default here.
+For comparison with volumetric smoothing, whose finite form it is: of the rate alone.
 """
 
 from dataclasses import dataclass
@@ -16,7 +14,18 @@ from mpm_verify.solver.state import Floats
 
 @dataclass(frozen=True)
 class Fbar(Smoothing):
-    """Parameters as in solver/smoothing/_base.py; raises ValueError unless of=rate."""
+    """F-bar; parameters as of Smoothing, volume ratios through nodes by default.
+
+    Raises
+    ------
+    ValueError
+        Unless of=rate.
+
+    References
+    ----------
+    Coombs, Charlton, Cortis & Augarde 2018, doi:10.1016/j.cma.2018.01.010, for the stress from F-bar.
+    Zhao, Jiang & Choo, Comput. Methods Appl. Mech. Eng. 402 (2022) 115255, for volume ratios through nodes.
+    """
 
     of: Of = "rate"
     where: Where = "node"
@@ -24,7 +33,7 @@ class Fbar(Smoothing):
     def __post_init__(self) -> None:
         super().__post_init__()
         if self.of != "rate":
-            raise ValueError(f"of = {self.of!r} must be rate: F-bar leaves the stress as the law gives it")
+            raise ValueError(f"of = {self.of!r} must be rate: F-bar leaves the stress as the material gives it")
 
     def strain(self, context: Context, x: Floats) -> Floats:
         """F (P,2,2) with the mean volume ratio of the step."""

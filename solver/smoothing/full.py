@@ -1,7 +1,7 @@
-"""Both parts smoothed. A mean over a cell of a convex set stays in it, so smoothed stresses stay admissible.
+"""Smoothing of both parts. A mean over a cell of a convex set stays in it, so smoothed stresses stay admissible.
 
 With beta = 1 and cells this is a reduced integration by one point: the hourglass velocity v_x ~ (x - x_c)(y - y_c) of a
-cell has no smoothed strain and costs nothing. So the default leaves a tenth, and beta = 1 is refused.
+cell has no smoothed strain and costs nothing. So the default leaves a tenth, and beta = 1 is not allowed.
 """
 
 from dataclasses import dataclass
@@ -12,7 +12,13 @@ from mpm_verify.solver.smoothing._base import Smoothing
 
 @dataclass(frozen=True)
 class Full(Smoothing):
-    """Parameters as in solver/smoothing/_base.py; raises ValueError for beta = 1 too."""
+    """Smoothing of both parts; parameters as of Smoothing, beta below 1.
+
+    Raises
+    ------
+    ValueError
+        For beta = 1 too.
+    """
 
     beta: float = 0.9
     volumetric: ClassVar[bool] = True

@@ -12,6 +12,6 @@ from mpm_verify.solver.smoothing._base import Smoothing
 
 @dataclass(frozen=True)
 class Volumetric(Smoothing):
-    """Parameters as in solver/smoothing/_base.py."""
+    """Volumetric smoothing; parameters as of Smoothing."""
 
     volumetric: ClassVar[bool] = True

@@ -1,4 +1,4 @@
-"""What a transfer is: the share of FLIP in a particle's velocity, and the places in the step where it may do more.
+"""Contract of a transfer: the fraction of FLIP in a particle's velocity, and the parts of a step where it may do more.
 
 All of them conserve linear momentum: the shape values of a particle sum to one, and their gradients to zero.
 """
@@ -13,20 +13,39 @@ Gradient = Callable[[Floats], Floats]
 
 
 class Transfer:
-    """Between particles and grid. A subclass is a frozen dataclass of its parameters; this one does no more."""
+    """Transfer of velocities between particles and grid; a subclass is a frozen dataclass of its parameters.
 
-    share: float = 0.0  # of FLIP: particles take the grid's acceleration; the rest is its velocity
-    filters_walls: ClassVar[bool] = False  # what walls give is filtered too: the momentum they gave is not known
+    This one has the fraction of FLIP alone.
+
+    Attributes
+    ----------
+    filters_walls
+        Whether what walls give is filtered too: then the momentum that they gave is not known.
+    """
+
+    filters_walls: ClassVar[bool] = False
+
+    @property
+    def flip_fraction(self) -> float:
+        """Fraction of FLIP: particles take the grid's acceleration; the rest is PIC, the grid's velocity."""
+        return 0.0
 
     def start(self, context: Context, L: Gradient | None = None) -> None:
-        """State of its own for a body whose velocity gradient is L(X) (P,2,2); none means that it is not known."""
+        """Write what the particles keep besides v, at the start of a run.
+
+        Parameters
+        ----------
+        context
+            Body on its grid.
+        L
+            Velocity gradient (P,2,2) as a function of X (P,2); None where it is not known.
+        """
 
     def give(self, context: Context, momentum: Floats) -> None:
         """Add to the first two columns of `momentum` (n,4) what the particles' velocities do not tell."""
 
     def filter(self, context: Context, velocity_acceleration: Floats) -> None:
-        """Make of lumped velocities, the first columns of `velocity_acceleration` (n,4), those that move and strain
-        the particles."""
+        """Replace lumped velocities, the first columns (n,4), by those that move and strain the particles."""
 
     def take(self, context: Context) -> None:
         """Take from the grid's new velocities what particles keep besides v."""

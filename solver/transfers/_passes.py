@@ -1,6 +1,6 @@
 """Single passes between particles and grid, for steps that cannot take all at once as solver/transfer.py does.
 
-Imported only by those who need them: kernels take seconds to compile. Weights are those of the places and F of the
+Imported only by those who need them: kernels take seconds to compile. Weights are those of the positions and F of the
 particles at the time of the call, which transfer.p2g has found to fit into their slabs.
 """
 
@@ -17,7 +17,7 @@ from mpm_verify.solver.weights import Fill
 
 @kernel(nothing(Fill, i8, i8, i8, i8, F2, F3, F1, F2, F1, F1, f8, i8, i8, F2))
 def spread_slab(fill, K, W, start, end, x, F, m, values, domain, origin, inv_dx, nx, ny, out):
-    """The particles start ... end-1."""
+    """Spread the values of particles start ... end-1."""
     xs = x.reshape(-1)
     Fs = F.reshape(-1)
     table = np.empty(3 * K * BLOCK)
@@ -41,7 +41,7 @@ def spread_slab(fill, K, W, start, end, x, F, m, values, domain, origin, inv_dx,
 
 @kernel(nothing(Fill, i8, i8, I1, F2, F3, F1, F2, F1, F1, f8, i8, i8, F2), parallel=True)
 def spread_all(fill, K, W, start, x, F, m, values, domain, origin, inv_dx, nx, ny, out):
-    """Adds sum m N values to the first columns of `out` (n,4), in slabs of two colours, as transfer.p2g."""
+    """Add sum m N values to the first columns of `out` (n,4), in slabs of two colours, as transfer.p2g."""
     slabs = start.shape[0] - 1
     for colour in range(2):
         for pair in prange((slabs - colour + 1) // 2):
@@ -51,7 +51,7 @@ def spread_all(fill, K, W, start, x, F, m, values, domain, origin, inv_dx, nx, n
 
 @kernel(nothing(Fill, i8, i8, i8, i8, F2, F3, F1, F1, f8, i8, i8, F2, F2))
 def collect_chunk(fill, K, W, start, end, x, F, domain, origin, inv_dx, nx, ny, velocity_acceleration, values):
-    """The particles start ... end-1."""
+    """Collect the values of particles start ... end-1."""
     xs = x.reshape(-1)
     Fs = F.reshape(-1)
     table = np.empty(3 * K * BLOCK)
@@ -80,7 +80,7 @@ def collect_chunk(fill, K, W, start, end, x, F, domain, origin, inv_dx, nx, ny, 
 
 @kernel(nothing(Fill, i8, i8, F2, F3, F1, F1, f8, i8, i8, F2, F2), parallel=True)
 def collect_all(fill, K, W, x, F, domain, origin, inv_dx, nx, ny, velocity_acceleration, values):
-    """values (P,4) = sum N motion."""
+    """Write the sums of N velocity_acceleration to `values` (P,4)."""
     for c in prange((x.shape[0] + CHUNK - 1) // CHUNK):
         start = c * CHUNK
         end = min(x.shape[0], start + CHUNK)
@@ -107,7 +107,7 @@ def advect_chunk(
     half,
     cell_crossings,
 ):
-    """The particles start ... end-1; returns and counts as transfer.g2p_chunk."""
+    """Advect the particles start ... end-1; return and count as transfer.g2p_chunk."""
     xs = x.reshape(-1)
     Fs = F.reshape(-1)
     table = np.empty(3 * K * BLOCK)
@@ -151,8 +151,10 @@ def advect_chunk(
 def advect_all(
     fill, K, W, x, F, domain, origin, inv_dx, nx, ny, velocity_acceleration, strain, dt, half, inverted, cell_crossings
 ):
-    """x += dt sum N motion, and F of the end of the step by L = sum strain dN; `inverted`, `cell_crossings` as in
-    transfer.g2p."""
+    """Advect all particles: x += dt sum N v, v of `velocity_acceleration`, and F by L = sum v dN, v of `strain`.
+
+    `inverted` and `cell_crossings` as in transfer.g2p.
+    """
     for c in prange(inverted.shape[0]):
         start = c * CHUNK
         end = min(x.shape[0], start + CHUNK)
@@ -163,7 +165,7 @@ def advect_all(
 
 
 def spread(context: Context, values: Floats) -> Floats:
-    """Momentum at the nodes, the first columns of (n,4), of particles with velocities `values` (P,2)."""
+    """Momentum at the nodes, the first columns of (n,4), that particles with velocities `values` (P,2) give."""
     g, p, basis, out = context.grid, context.particles, context.basis, np.zeros_like(context.grid.momentum_force)
     spread_all(
         basis.fill, basis.support, basis.domain_size, context.slabs.start, p.x, p.F, p.m, np.ascontiguousarray(values),
@@ -173,7 +175,7 @@ def spread(context: Context, values: Floats) -> Floats:
 
 
 def collect(context: Context, velocity_acceleration: Floats) -> Floats:
-    """Velocity and acceleration (P,4) of the grid, given at its nodes (n,4), where the particles are."""
+    """Velocity and acceleration (P,4) of the grid where the particles are, from those at its nodes (n,4)."""
     g, p, basis, values = context.grid, context.particles, context.basis, np.empty((len(context.particles), 4))
     collect_all(
         basis.fill, basis.support, basis.domain_size, p.x, p.F, p.domain.ravel(), g.origin, 1.0 / g.dx, g.nx, g.ny,
@@ -204,7 +206,7 @@ def lumped(context: Context, momentum: Floats) -> Floats:
 
 
 def walled(context: Context, momentum: Floats, before: bool = False) -> Floats:
-    """The same as (n,4), with the walls' velocities at the end of the step, or before it."""
+    """Momentum over mass as (n,4), with the walls' velocities at the end of the step, or before it."""
     g, w, velocity = context.grid, context.walls, np.empty_like(momentum)
     value = w.value - context.dt * w.rate if before else w.value
     solve(g.mass, momentum, velocity, w.held, value, w.rate, False, 0.0, context.cutoff, g.ny)

@@ -3,8 +3,8 @@
     m_i v_i = sum m_p N [v_p + B_p D_p^-1 (x_i - x_p)]      D_p = sum N (x_i - x_p)(x_i - x_p)^T
     v_p = sum N v_i                                         B_p = sum N v_i (x_i - x_p)^T
 
-Source: Jiang, Schroeder & Teran, J. Comput. Phys. 338 (2017) 137, eqs. for the symplectic step. D is summed from the
-weights of the step, so this holds for every basis; x_p is sum N x_i, which for cpdi2 is the centroid of its corners.
+B_p is particles.affine_velocity. D is summed from the weights of the step, so this holds for every basis; x_p is
+sum N x_i, which for cpdi2 is the centroid of its corners.
 For hat functions D vanishes on the edges of cells, though N D^-1 (x_i - x_p) = dN does not: entries of D on its
 diagonal are kept above 1e-12 h^2, and nearer to an edge than that the affine part is dropped.
 Conserves: linear momentum; angular momentum with the affine part, sum m (x_p x v_p + B_yx - B_xy), exactly, but for
@@ -23,14 +23,14 @@ from mpm_verify.solver.transfer import CHUNK, B
 from mpm_verify.solver.transfers._base import Gradient, Transfer
 from mpm_verify.solver.weights import Fill
 
-LEAST = 1e-12  # of D / h^2
+LEAST = 1e-12  # least diagonal entry of D / h^2
 
 
 @kernel(inline=True)
 def scatter_affine(K, lo, hi, ny, x, m, affine, ox, oy, inv_dx, table, node, out):
-    """Momentum m N B D^-1 (x_i - x_p) of particles lo ... hi-1; places in cells."""
+    """Add the momentum m N B D^-1 (x_i - x_p) of particles lo ... hi-1; positions in cells."""
     rows = np.float64(ny)
-    per_row = 1.0 / rows  # a division of whole numbers for each neighbour takes longer than all else
+    per_row = 1.0 / rows  # a division of whole numbers for each support node takes longer than all else
     for q in range(np.uint64(hi - lo)):
         p = np.uint64(lo) + q
         px = (x[p, 0] - ox) * inv_dx
@@ -69,7 +69,7 @@ def scatter_affine(K, lo, hi, ny, x, m, affine, ox, oy, inv_dx, table, node, out
 
 @kernel(nothing(Fill, i8, i8, i8, i8, F2, F3, F1, F2, F1, F1, f8, i8, i8, F2))
 def give_slab(fill, K, W, start, end, x, F, m, affine, domain, origin, inv_dx, nx, ny, out):
-    """The particles start ... end-1."""
+    """Give the affine part of particles start ... end-1."""
     xs = x.reshape(-1)
     Fs = F.reshape(-1)
     table = np.empty(3 * K * BLOCK)
@@ -85,7 +85,7 @@ def give_slab(fill, K, W, start, end, x, F, m, affine, domain, origin, inv_dx, n
 
 @kernel(nothing(Fill, i8, i8, I1, F2, F3, F1, F2, F1, F1, f8, i8, i8, F2), parallel=True)
 def give_affine(fill, K, W, start, x, F, m, affine, domain, origin, inv_dx, nx, ny, out):
-    """Adds to the first columns of `out` (n,4), in slabs of two colours as transfer.p2g, which saw that they fit."""
+    """Add the affine part to the first columns of `out` (n,4), in slabs of two colours as transfer.p2g, which fit."""
     slabs = start.shape[0] - 1
     for colour in range(2):
         for pair in prange((slabs - colour + 1) // 2):
@@ -97,9 +97,9 @@ def give_affine(fill, K, W, start, x, F, m, affine, domain, origin, inv_dx, nx, 
 
 @kernel(inline=True)
 def gather_affine(K, lo, hi, ny, x, affine, ox, oy, inv_dx, dx, velocity_acceleration, table, node):
-    """B of particles lo ... hi-1: sum N v_i (x_i - x_p)^T about the mean place."""
+    """Write B of particles lo ... hi-1: sum N v_i (x_i - x_p)^T about the mean position."""
     rows = np.float64(ny)
-    per_row = 1.0 / rows  # a division of whole numbers for each neighbour takes longer than all else
+    per_row = 1.0 / rows  # a division of whole numbers for each support node takes longer than all else
     for q in range(np.uint64(hi - lo)):
         p = np.uint64(lo) + q
         px = (x[p, 0] - ox) * inv_dx
@@ -130,7 +130,7 @@ def gather_affine(K, lo, hi, ny, x, affine, ox, oy, inv_dx, dx, velocity_acceler
 
 @kernel(nothing(Fill, i8, i8, i8, i8, F2, F3, F2, F1, F1, f8, i8, i8, F2))
 def take_chunk(fill, K, W, start, end, x, F, affine, domain, origin, inv_dx, nx, ny, velocity_acceleration):
-    """The particles start ... end-1."""
+    """Take B of particles start ... end-1."""
     xs = x.reshape(-1)
     Fs = F.reshape(-1)
     table = np.empty(3 * K * BLOCK)
@@ -148,7 +148,7 @@ def take_chunk(fill, K, W, start, end, x, F, affine, domain, origin, inv_dx, nx,
 
 @kernel(nothing(Fill, i8, i8, F2, F3, F2, F1, F1, f8, i8, i8, F2), parallel=True)
 def take_affine(fill, K, W, x, F, affine, domain, origin, inv_dx, nx, ny, velocity_acceleration):
-    """B of all particles."""
+    """Write B (P,4) of all particles."""
     for c in prange((x.shape[0] + CHUNK - 1) // CHUNK):
         start = c * CHUNK
         end = min(x.shape[0], start + CHUNK)
@@ -157,20 +157,27 @@ def take_affine(fill, K, W, x, F, affine, domain, origin, inv_dx, nx, ny, veloci
 
 @dataclass(frozen=True)
 class Apic(Transfer):
-    """No parameters; particles.affine_velocity (P,4) is the state of its own: xx, xy, yx, yy, a velocity times a
-    length."""
+    """APIC, the affine particle-in-cell method; no parameters.
+
+    The state of its own is particles.affine_velocity (P,4): B as xx, xy, yx, yy, a velocity times a length.
+
+    References
+    ----------
+    Jiang, Schroeder, Selle, Teran & Stomakhin 2015, doi:10.1145/2766996.
+    Jiang, Schroeder & Teran 2017, doi:10.1016/j.jcp.2017.02.050, for the symplectic step.
+    """
 
     def start(self, context: Context, L: Gradient | None = None) -> None:
-        """B = L D, by which p2g gives each node the velocity of the affine field; without L it is zero."""
+        """Write B = L D, by which p2g gives each node the velocity of the affine field; zero without L (P,2,2)."""
         p, g = context.particles, context.grid
         p.affine_velocity = np.zeros((len(p), 4))
         if L is not None:
-            places = np.concatenate([g.nodes, np.zeros_like(g.nodes)], axis=1)
-            affine_of(context, places)  # of v_i = x_i, B is D
+            positions = np.concatenate([g.nodes, np.zeros_like(g.nodes)], axis=1)
+            write_affine(context, positions)  # for v_i = x_i, B is D
             p.affine_velocity = (L(p.X) @ p.affine_velocity.reshape(-1, 2, 2)).reshape(-1, 4)
 
     def give(self, context: Context, momentum: Floats) -> None:
-        """The affine part."""
+        """Add the affine part to the first two columns of `momentum` (n,4)."""
         g, p, basis = context.grid, context.particles, context.basis
         give_affine(
             basis.fill, basis.support, basis.domain_size, context.slabs.start, p.x, p.F, p.m, p.affine_velocity,
@@ -178,11 +185,11 @@ class Apic(Transfer):
         )  # fmt: skip
 
     def take(self, context: Context) -> None:
-        """B from the new velocities."""
-        affine_of(context, context.grid.velocity_acceleration)
+        """Write B from the new velocities."""
+        write_affine(context, context.grid.velocity_acceleration)
 
 
-def affine_of(context: Context, velocity_acceleration: Floats) -> None:
+def write_affine(context: Context, velocity_acceleration: Floats) -> None:
     """Write particles.affine_velocity from velocities, the first columns of `velocity_acceleration` (n,4)."""
     g, p, basis = context.grid, context.particles, context.basis
     take_affine(

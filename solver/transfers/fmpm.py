@@ -6,11 +6,10 @@ With v the lumped velocities after the equation of motion, S from nodes to parti
     v_p = S w,  x_p += dt S w,  L = sum w dN
 
 The filter acts on the new velocities, accelerations included, and a held node has the wall's velocity after each term.
-It acts too on those that the stress orders musl and usf map for their strain: without it F follows smoother velocities
-than the places do, and with usf the run breaks down. Source: Nairn & Hammerquist, CMAME 377 (2021) 113667. (XPIC(k)
-filters what was there before the step: Hammerquist & Nairn, CMAME 318 (2017) 724.)
-Conserves: linear momentum, since sum m_i (A w)_i = sum m_i w_i. Angular momentum and energy are lost, less with each
-term: where A leaves the share a of a wave, a step of PIC keeps a of it and one of FMPM(k) 1 - (1 - a)^k.
+It acts too on those that the stress updates musl and usf map for their strain: without it F follows smoother velocities
+than the positions do, and with usf the run fails. XPIC(k) filters what was there before the step.
+Conserves: linear momentum, since sum m_i (A w)_i = sum m_i w_i. Angular momentum and energy fall, less with each
+term: where A leaves the fraction a of a wave, a step of PIC keeps a of it and one of FMPM(k) 1 - (1 - a)^k.
 The stable step of usl shrinks with k: dt w < sqrt(2 (a + 1/g)), g = (1 - (1 - a)^k) / a, with w the frequency of that
 wave for lumped masses. In one dimension, two particles a cell, the shortest wave has a = 1/4 and w = 2 c/h, and dt c/h
 is below 0.79 for k = 1, 0.64 for 2, 0.56 for 4, 0.51 for 8; FLIP, dt w < 2 / sqrt(2 - a), has 0.76.
@@ -31,7 +30,23 @@ HIGHEST = 100  # terms; each takes two passes over the particles
 
 @dataclass(frozen=True)
 class Fmpm(Transfer):
-    """`order`: terms k of the series, a whole number from 1. Raises ValueError otherwise."""
+    """FMPM(k): velocities from the full mass matrix.
+
+    Parameters
+    ----------
+    order
+        Terms k of the series, a whole number from 1 to HIGHEST.
+
+    Raises
+    ------
+    ValueError
+        For another number of terms.
+
+    References
+    ----------
+    Nairn & Hammerquist 2021, doi:10.1016/j.cma.2021.113667.
+    Hammerquist & Nairn 2017, doi:10.1016/j.cma.2017.01.035, for XPIC(k).
+    """
 
     order: float = 2
     filters_walls: ClassVar[bool] = True

@@ -1,7 +1,8 @@
 """Speed, as ratios within one run: `make bench`. Nothing here asserts a time; what is asserted is that results agree.
 
 Every comparison alternates its two sides, so that a drift of the machine's speed hits both; the median of the pairs'
-ratios is what README quotes. 128 x 128 cells, 4 particles a cell; body force and errors left out but where named.
+ratios is what docs/results.md quotes. 128 x 128 cells, 4 particles a cell; body force and errors left out but where
+named.
 """
 
 import subprocess

@@ -1,4 +1,4 @@
-"""The command of a case that has none of its own: an option for each field of its Run, and those of any study.
+"""Command of a case that has none of its own: an option for each field of its Run, and those of any study.
 
 A user's case is such a command too: `verify path/to/own.py --cells 8,16,32`.
 """

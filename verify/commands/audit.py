@@ -37,16 +37,16 @@ def audit(
     from mpm_verify.verify.run import usage
 
     with usage():
-        law, result = examine(solution, material)
+        name, result = examine(solution, material)
     with printing():
         if json_output:
-            typer.echo(json.dumps(document(solution, law, result), indent=2, ensure_ascii=False))
+            typer.echo(json.dumps(document(solution, name, result), indent=2, ensure_ascii=False))
         else:
-            show(f"{solution} in {law}", result)
+            show(f"{solution} in {name}", result)
 
 
 def examine(specification: str, material: str | None) -> tuple[str, "Audit"]:
-    """The material and the audit; a user's file is checked before. Raises ValueError."""
+    """Name of the material and the audit; a user's file is checked before. Raises ValueError."""
     from mpm_verify.mms.audit import audit as score
     from mpm_verify.mms.check import check
     from mpm_verify.mms.manufacture import manufacture
@@ -54,18 +54,18 @@ def examine(specification: str, material: str | None) -> tuple[str, "Audit"]:
 
     solution = create(SOLUTIONS, specification)
     name = material or solution.material
-    law = create(MATERIALS, name)
+    model = create(MATERIALS, name)
     if is_file(specification):
-        check(solution, law)
-    return name, score(manufacture(solution, law, law.rho0), solution, law)
+        check(solution, model)
+    return name, score(manufacture(solution, model, model.rho0), solution, model)
 
 
 def document(solution: str, material: str, result: "Audit") -> dict[str, object]:
-    """The content of --json: each blind spot with its sentence, and all that was measured."""
+    """Content of --json: each blind spot with its sentence, and all that was measured."""
     from mpm_verify.reports.sentences import blind_spots as words
 
     spots = [{**asdict(spot), "sentence": words.sentence(spot)} for spot in result.spots]
-    return {"solution": solution, "material": material, "spots": spots, "numbers": result.numbers}
+    return {"solution": solution, "material": material, "blind_spots": spots, "numbers": result.numbers}
 
 
 def show(title: str, result: "Audit") -> None:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 def diff(
     before: Annotated[Path, typer.Argument(metavar="A", help="Folder of a study.")],
-    after: Annotated[Path, typer.Argument(metavar="B", help="Folder of the same study, run by other sources.")],
+    after: Annotated[Path, typer.Argument(metavar="B", help="Folder of the same study, run with other source code.")],
     tolerance: Annotated[float, typer.Option(help="Relative change of a number that counts; 0: any.")] = 1e-9,
     json_output: Json = False,
 ) -> int:
@@ -40,7 +40,7 @@ def diff(
 
 
 def line(change: "Change") -> dict[str, Any]:
-    """A change for JSON."""
+    """Row of a change for JSON."""
     from dataclasses import asdict
 
     from mpm_verify.reports.export.document import finite

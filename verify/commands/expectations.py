@@ -28,7 +28,7 @@ def expectations(
     method: Annotated[str | None, typer.Option(help="Only this method.", autocompletion=completion(METHODS))] = None,
     json_output: Annotated[bool, typer.Option("--json", help="One JSON document on standard output.")] = False,
 ) -> None:
-    """What is expected of each method on each solution, with its source: registered before anything runs."""
+    """Print what is expected of each method on each solution, with its source: registered before anything runs."""
     from mpm_verify.verify.run import usage
 
     with usage():
@@ -47,7 +47,7 @@ def expectations(
 
 
 def line(entry: "Entry") -> dict[str, object]:
-    """An entry as data."""
+    """Row of an entry as data."""
     e = entry.expectation
     band = None if e.order is None else [e.order - e.below, e.order + e.above]
     return {
@@ -57,7 +57,7 @@ def line(entry: "Entry") -> dict[str, object]:
 
 
 def show(entries: "list[Entry]") -> None:
-    """A row a solution and method, the quantities beside each other."""
+    """Print a row for each solution and method, the quantities beside each other."""
     from rich.table import Table
 
     from mpm_verify.verify.terminal.table import Listened
@@ -83,7 +83,7 @@ def show(entries: "list[Entry]") -> None:
 
 
 def word(e: "Expectation") -> str:
-    """`2 (1.8-2.3)`, `stalls` or `diverges`."""
+    """Expectation in words: `2 (1.8-2.3)`, `stalls` or `diverges`."""
     from mpm_verify.reports.sentences import verdicts
 
     if e.order is not None:

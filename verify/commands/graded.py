@@ -36,7 +36,7 @@ def graded(
     contrast: Annotated[
         float, typer.Option(help="Particles per length where strain is largest, over those where there is none.")
     ] = 2.0,
-    power: Annotated[float, typer.Option(help="Of the strain that particles per length follow.")] = 0.25,
+    power: Annotated[float, typer.Option(help="Exponent of the strain that particles per length follow.")] = 0.25,
     jobs: Jobs = None,
     out: Out = None,
     json_output: Json = False,
@@ -60,7 +60,9 @@ def graded(
             power,
         )
         study = build_graded(plan, command(), name(plan))
-    settings = Settings(named(study, out), jobs, 1, json_output, page=page, dry_run=dry_run, yes=yes, show=show)
+    settings = Settings(
+        named(study, out), jobs=jobs, json_output=json_output, page=page, dry_run=dry_run, yes=yes, show=show
+    )
     return conduct(study, settings)
 
 

@@ -22,7 +22,7 @@ from mpm_verify.solver.plugins import (
 from mpm_verify.verify.terminal.output import printing
 
 PACKAGES = (CASES, METHODS, TRANSFERS, SMOOTHINGS, LAYOUTS, SOLUTIONS, MATERIALS, RATES, NEGATIVE_CONTROLS)
-REMARKS = {RATES: " (of the laws in rate form)", NEGATIVE_CONTROLS: " (negative controls, taken as a rate)"}
+REMARKS = {RATES: " (of the materials in rate form)", NEGATIVE_CONTROLS: " (negative controls, taken as a rate)"}
 
 
 def list_plugins() -> None:

@@ -40,8 +40,9 @@ def methods(
         levels = QUICK if quick else LEVELS
         study = build_methods(asked or every_method(), levels, integers(ppc, "--ppc"), command(), name)
     settings = Settings(
-        named(study, out), jobs, 1, json_output, junit, summary, page, dry_run=dry_run, yes=yes, show=show_overview
-    )
+        named(study, out), jobs=jobs, json_output=json_output, junit=junit, summary=summary, page=page,
+        dry_run=dry_run, yes=yes, show=show_overview,
+    )  # fmt: skip
     return conduct(study, settings)
 
 

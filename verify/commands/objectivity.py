@@ -1,4 +1,4 @@
-"""`verify objectivity`: the paper's Figure 2, objective rates against closed forms, and readings that are wrong."""
+"""`verify objectivity`: the paper's Figure 2, objective rates against closed forms, and negative controls."""
 
 from pathlib import Path
 from typing import Any
@@ -10,7 +10,7 @@ from mpm_verify.verify.options import study_command, values
 
 
 def objectivity(asked: dict[str, list[str]], out: Path | None, **more: Any) -> int:
-    """Turn a block under gravity by 90 degrees, and follow objective rates and wrong readings of them."""
+    """Turn a block under gravity by 90 degrees, and follow objective rates and negative controls."""
     from mpm_verify.verify.run import Settings, command, conduct, named, usage
 
     with usage():

@@ -35,7 +35,10 @@ def sweep(
         from mpm_verify.cases.harness.study_file import read
 
         read_ = read(study, command())
-    settings = Settings(named(read_, out), jobs, threads, json_output, junit, summary, page, vtk, dry_run, yes)
+    settings = Settings(
+        named(read_, out), jobs=jobs, threads=threads, json_output=json_output, junit=junit, summary=summary, page=page,
+        vtk=vtk, dry_run=dry_run, yes=yes,
+    )  # fmt: skip
     return conduct(read_, settings)
 
 

@@ -1,4 +1,4 @@
-"""What checks print: each part with how many of its checks pass, and those that do not with their numbers."""
+"""Checks on a terminal: each part with how many of its checks pass, and those that do not with their numbers."""
 
 from collections.abc import Sequence
 from math import isfinite, nan
@@ -22,7 +22,7 @@ def show(record: Record, page: Path | None, lead: str = "") -> None:
         out.width = max(out.width, 100)
     out.print(Text(f"\n{record.study.title}", "bold"))
     table = Table(box=None, pad_edge=False, header_style="dim")
-    for name in ("", "part", "checks", "pass", "closest call"):
+    for name in ("", "part", "checks", "pass", "closest to its bound"):
         table.add_column(name, justify="right" if name in ("checks", "pass") else "left")
     for group in dict.fromkeys(check.group for check in every):
         checks = [check for check in every if check.group == group]
@@ -42,7 +42,7 @@ def show(record: Record, page: Path | None, lead: str = "") -> None:
 
 
 def sentence(check: Check) -> str:
-    """What was found, and what it is held against."""
+    """Sentence with what was found, and what it is held against."""
     within = f" within {check.within:.3g}" if check.within else ""
     way = f"{check.way} " if check.way.startswith("at") else ""
     relative = " of it" if check.way == "relative" else ""
@@ -51,19 +51,19 @@ def sentence(check: Check) -> str:
 
 
 def closest(checks: Sequence[Check]) -> str:
-    """The check that uses most of what it is allowed, and its numbers; nothing where no check allows anything."""
-    shares = {check: used(check) for check in checks}
-    bounded = [check for check in checks if isfinite(shares[check])]
+    """Check that uses most of what it is allowed, and its numbers; empty where no check allows anything."""
+    fractions = {check: used(check) for check in checks}
+    bounded = [check for check in checks if isfinite(fractions[check])]
     if not bounded:
         return ""
-    most = max(bounded, key=lambda check: shares[check])
+    most = max(bounded, key=lambda check: fractions[check])
     if most.way.startswith("at"):
         return f"{most.found:.2g}, {most.way} {most.expected:.2g}: {most.name}"
     return f"{most.miss:.2g} of {most.within:.2g}: {most.name}"
 
 
 def used(check: Check) -> float:
-    """Share of what the check is allowed that it uses, above 1 where it fails; NaN where there is no such number."""
+    """Fraction of what the check is allowed that it uses, above 1 where it fails; not a number where there is none."""
     if check.within:
         return check.miss / check.within
     over, under = (check.found, check.expected) if check.way == "at most" else (check.expected, check.found)

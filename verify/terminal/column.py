@@ -1,4 +1,4 @@
-"""What a study of the column prints: its runs, the paper's sentences, and the checks."""
+"""Study of the column on a terminal: its runs, the paper's sentences, and the checks."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Element tests on a terminal: as any study of Examinations."""
+"""Element tests on a terminal, as any study of Examinations."""
 
 from mpm_verify.verify.terminal.examined import show
 

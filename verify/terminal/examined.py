@@ -1,4 +1,4 @@
-"""What a study of Examinations prints: each part with its checks, and what came out in words."""
+"""Study of Examinations on a terminal: each part with its checks, and what came out in words."""
 
 from pathlib import Path
 

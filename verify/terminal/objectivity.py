@@ -1,4 +1,4 @@
-"""Frame indifference on a terminal: as any study of Examinations."""
+"""Frame indifference on a terminal, as any study of Examinations."""
 
 from mpm_verify.verify.terminal.examined import show
 

@@ -1,4 +1,4 @@
-"""Printing to somebody who may have gone: `verify list | head -1` is no error."""
+"""Printing to a reader who may have gone: `verify list | head -1` is not an error."""
 
 import os
 import sys
@@ -10,9 +10,9 @@ import typer
 
 @contextmanager
 def printing() -> Iterator[None]:
-    """Whatever is printed inside goes nowhere once nobody reads it; a full disk is one line.
+    """Discard what is printed inside once nobody reads it; a full disk is one line.
 
-    An error that names a file is none of standard output, and is left as it is.
+    An error that names a file has nothing to do with standard output, and is left as it is.
     """
     try:
         yield

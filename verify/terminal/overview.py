@@ -1,4 +1,4 @@
-"""What a comparison of many methods prints at its end: one table, what did not pass, and the path of the report."""
+"""Comparison of many methods on a terminal: one table, what did not pass, and the path of the report."""
 
 from pathlib import Path
 

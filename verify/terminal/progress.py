@@ -1,4 +1,4 @@
-"""A progress bar with the time left, on standard error, silent when that is not a terminal."""
+"""Progress bar with the time left, on standard error, silent when that is not a terminal."""
 
 import sys
 from collections.abc import Callable, Iterator, Sequence
@@ -9,27 +9,27 @@ from mpm_verify.cases.harness.runner import Result, Run
 
 
 class Silent:
-    """Hears and says nothing."""
+    """Listener that says nothing."""
 
     def hear(self, news: Sequence[tuple[str, float]]) -> None:
-        """Digests of runs under way with the share that is done."""
+        """Hear of runs under way: digests, each with the fraction that is done."""
 
     def done(self, result: Result) -> None:
-        """A run has ended."""
+        """Hear that a run has ended."""
 
 
 class Bar(Silent):
-    """Grows with what the runs cost, not with their number."""
+    """Bar that grows with what the runs cost, not with their number."""
 
     def __init__(self, bar: Any, waiting: Sequence[Run], cost: Callable[[Run], float]) -> None:
-        self.bar, self.costs, self.shares = bar, {run.digest: cost(run) for run in waiting}, dict[str, float]()
+        self.bar, self.costs, self.fractions = bar, {run.digest: cost(run) for run in waiting}, dict[str, float]()
         self.task = bar.add_task("", total=sum(self.costs.values()), runs=0, of=len(waiting), last="")
         self.finished = 0
 
     def hear(self, news: Sequence[tuple[str, float]]) -> None:
         """Move the bar."""
-        self.shares.update(news)
-        self.bar.update(self.task, completed=sum(self.costs[digest] * share for digest, share in self.shares.items()))
+        self.fractions.update(news)
+        self.bar.update(self.task, completed=sum(self.costs[digest] * part for digest, part in self.fractions.items()))
 
     def done(self, result: Result) -> None:
         """Name the run that has ended."""
@@ -41,7 +41,7 @@ class Bar(Silent):
 
 @contextmanager
 def progress(waiting: Sequence[Run], cost: Callable[[Run], float]) -> Iterator[Silent]:
-    """A Bar on a terminal, and Silent elsewhere or where nothing is to be done."""
+    """Bar on a terminal, and Silent elsewhere or where nothing is to be done."""
     if not waiting or sys.stderr is None or not sys.stderr.isatty():
         yield Silent()
         return

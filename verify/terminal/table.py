@@ -1,4 +1,4 @@
-"""What a study prints at its end: errors and local orders, the verdicts with their reasons, the path of the report."""
+"""Refinement study on a terminal: errors and local orders, the verdicts with their reasons, the path of the report."""
 
 from collections.abc import Iterator, Sequence
 from itertools import zip_longest
@@ -22,7 +22,7 @@ ALWAYS = ("u", "rms")
 
 
 class Listened(Console):
-    """Rich ends the program when nobody reads, with the exit code of a FAIL; this leaves it to verify.output."""
+    """Console that leaves a closed pipe to verify.output: Rich would end the program with the exit code of a FAIL."""
 
     def on_broken_pipe(self) -> None:
         """Tell the caller."""
@@ -39,7 +39,7 @@ def show(record: Record, page: Path | None, console: Console | None = None) -> N
     shown = [f for f in found if f.plan.judged or (f.plan.quantity, f.plan.norm) == ALWAYS]
     out.print(errors_table(record, shown))
     if most := max((len(level.errors) for f in found for level in f.levels), default=1) - 1:
-        out.print(f"errors are geometric means of up to {most + 1} runs with the particles elsewhere in their cells")
+        out.print(f"errors are geometric means of up to {most + 1} runs, each with other positions of the particles")
     for finding in found:
         if finding.plan.judged:
             verdict(out, record, finding)
@@ -59,7 +59,7 @@ def where(out: Console, page: Path | None, words: str = "") -> None:
 
 
 def errors_table(record: Record, found: Sequence[Finding]) -> Table:
-    """Error, local order, and faces of cells that a particle passed, at each cell count; a failed run by its reason."""
+    """Table of error, local order and crossings at each cell count; a failed run by its reason."""
     table = Table(box=None, pad_edge=False, header_style="dim")
     names = {"ppc": "per cell"} | {"quantity": "quantity", "cells": "cells"}
     heads = [*columns(record, found[0].plan), "quantity", "cells"] if found else ["quantity", "cells"]
@@ -75,13 +75,13 @@ def errors_table(record: Record, found: Sequence[Finding]) -> Table:
 
 
 def columns(record: Record, plan: QuantityPlan[Any]) -> dict[str, str]:
-    """What names a refinement, the solution only where there are several."""
+    """Names of a refinement by column, the solution only where there are several."""
     found = {name: label(str(value)) for name, value in record.columns(plan.run).items()}
     return found if len(record.solutions) > 1 else {name: text for name, text in found.items() if name != "solution"}
 
 
 def rows(record: Record, finding: Finding) -> Iterator[tuple[str, ...]]:
-    """A row a level; names once a block."""
+    """Rows, one for each level; names once a block."""
     plan, orders = finding.plan, iter(finding.verdict.local_orders)
     first: tuple[str, ...] = (*columns(record, plan).values(), f"{plan.quantity} {plan.norm}")
     earlier = False
@@ -97,7 +97,7 @@ def rows(record: Record, finding: Finding) -> Iterator[tuple[str, ...]]:
 
 
 def order(local: float | None) -> str:
-    """A local order; none where an error is zero."""
+    """Local order in words; empty where an error is zero."""
     return "" if local is None else f"{local:.2f}"
 
 
@@ -109,16 +109,16 @@ def verdict(out: Console, record: Record, finding: Finding) -> None:
 
 
 def sentence(record: Record, finding: Finding) -> Text:
-    """The verdict in words."""
-    d, v = finding.plan, finding.verdict
-    expected = f", {verdicts.expected(d.expectation)} expected" if d.expectation else ""
+    """Verdict in words."""
+    plan, v = finding.plan, finding.verdict
+    expected = f", {verdicts.expected(plan.expectation)} expected" if plan.expectation else ""
     text = Text(f"\n{v.outcome}", STYLES[v.outcome])
-    text.append(f"  {named(record, d)}{expected}: {verdicts.said(v.reason)}.", "not bold default")
+    text.append(f"  {named(record, plan)}{expected}: {verdicts.said(v.reason)}.", "not bold default")
     return text
 
 
 def named(record: Record, plan: QuantityPlan[Any]) -> str:
-    """What a sentence is about: the method, what else names its refinement, and the quantity."""
+    """Subject of a sentence: the method, what else names its refinement, and the quantity."""
     names = columns(record, plan)
     method, solution, ppc = (names.pop(key, "") for key in ("method", "solution", "ppc"))
     rest = [f"{name} {value}" for name, value in names.items()] + [f"{ppc} per cell"] * bool(ppc)
@@ -126,7 +126,7 @@ def named(record: Record, plan: QuantityPlan[Any]) -> str:
 
 
 def stall(record: Record, finding: Finding, found: Stall) -> Text:
-    """Where the order falls and what explains it; what does not is in the report."""
+    """Stall in words: where the order falls and what explains it; what does not is in the report."""
     text = Text("\nSTALL", "bold")
     text.append(f"  {named(record, finding.plan)}: {stalls.where(found)}. ", "not bold default")
     text.append(" ".join(stalls.reasons(found)), "not bold default")

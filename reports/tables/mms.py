@@ -7,7 +7,7 @@ from typing import Any
 
 import pandas as pd
 
-from mpm_verify.cases.harness.axes import crossed, particle_axes, position_axes, time_axes
+from mpm_verify.cases.harness.axes import cell_crossings, particle_axes, position_axes, time_axes
 from mpm_verify.cases.harness.study import Head, QuantityPlan
 from mpm_verify.cases.mms.run import NORMS, QUANTITIES
 from mpm_verify.reports.figures.local_orders import orders as pairs
@@ -21,7 +21,7 @@ Key = tuple[Head, str, str]
 
 
 def write(record: Record, folder: Path) -> None:
-    """One CSV file a table into `folder`; numbers read back as they are stored."""
+    """Write one CSV file for each table into `folder`; numbers read back as they are stored."""
     for name, frame in frames(record).items():
         frame.to_csv(folder / f"{name}.csv", index=False, lineterminator="\n")
 
@@ -46,20 +46,20 @@ def frames(record: Record) -> dict[str, pd.DataFrame]:
 
 
 def roles(record: Record) -> dict[Key, str]:
-    """`judged` or `shown` for each declared quantity; what is not declared is shown."""
-    return {key(d): "judged" if d.judged else "shown" for d in record.study.plans}
+    """Role of each planned quantity, `judged` or `shown`; what has no plan is shown."""
+    return {key(plan): "judged" if plan.judged else "shown" for plan in record.study.plans}
 
 
 def verdicts(record: Record) -> Rows:
-    """A row a declared quantity. Where nothing was expected there is no verdict, only a slope."""
+    """Rows, one for each planned quantity. Where nothing was expected there is no verdict, only a slope."""
     rows = []
     for found in record.findings:
-        d, v, e = found.plan, found.verdict, found.plan.expectation
+        plan, v, e = found.plan, found.verdict, found.plan.expectation
         expected = None if e is None else e.kind if e.order is None else e.order
         low, high = v.interval or (None, None)
         rows.append(
-            named(record, d)
-            | {"role": "judged" if d.judged else "shown", "expected": expected, "observed": v.observed}
+            named(record, plan)
+            | {"role": "judged" if plan.judged else "shown", "expected": expected, "observed": v.observed}
             | {"low": low, "high": high, "verdict": str(v.outcome) if e else None}
             | {"code": str(v.reason.code) if e else None, "reason": commands.reason(record.study, found) if e else None}
             | {"source": e.source if e else None}
@@ -68,7 +68,7 @@ def verdicts(record: Record) -> Rows:
 
 
 def errors(record: Record) -> Rows:
-    """A row a finished run and quantity, with every norm and the rms of the exact quantity."""
+    """Rows, one for each finished run and quantity, with every norm and the rms of the exact quantity."""
     rows = []
     for run in record.study.runs:
         result = record.result(run)
@@ -82,7 +82,7 @@ def errors(record: Record) -> Rows:
 
 
 def orders(record: Record) -> Rows:
-    """A row a pair of neighbouring cell sizes, for every series, quantity and norm."""
+    """Rows, one for each pair of consecutive cell sizes, for every series, quantity and norm."""
     rows, role, passed = [], roles(record), crossings(record)
     for s in record.series:
         for quantity in QUANTITIES:
@@ -99,19 +99,19 @@ def orders(record: Record) -> Rows:
 
 
 def contamination(record: Record) -> Rows:
-    """Shares of the finest error that are not of the expected order, for each quantity that has such an order."""
+    """Rows of the fractions of the finest error that are not of the expected order, for each quantity with an order."""
     rows = []
     for found in record.findings:
-        shares = found.verdict.contamination
-        if shares is not None:
+        mixed = found.verdict.contamination
+        if mixed is not None:
             row = named(record, found.plan)
             row |= {"role": "judged" if found.plan.judged else "shown"}
-            rows.append(row | {"lower_order": shares.lower, "floor": shares.floor, "at_most": shares.most})
+            rows.append(row | {"lower_order": mixed.lower, "floor": mixed.floor, "at_most": mixed.most})
     return rows
 
 
 def runs(record: Record) -> Rows:
-    """A row a run of the study, done or not, with every parameter."""
+    """Rows, one for each run of the study, done or not, with every parameter."""
     rows = []
     for run in record.study.runs:
         result = record.result(run)
@@ -131,7 +131,7 @@ def runs(record: Record) -> Rows:
 
 
 def stalls(record: Record) -> Rows:
-    """A row a stall and cause, the weightiest first."""
+    """Rows, one for each stall and cause, the weightiest first."""
     rows = []
     for found in record.findings:
         for cause in found.stall.causes if found.stall else ():
@@ -146,19 +146,19 @@ def stalls(record: Record) -> Rows:
 
 
 def time_step(record: Record) -> Rows:
-    """A row a time step of each series that has several, for every quantity and norm; the largest first."""
+    """Rows, one for each time step of each series that has several, for every quantity and norm; the largest first."""
     rows = []
     for quantity, norm in product(QUANTITIES, NORMS):
         for a in time_axes(record.study.runs, record.results, quantity, norm):
             head = record.columns(a.run) | {"cells": a.run.cells}
-            for courant, error, order, share in zip(a.courants, a.errors, (None, *a.orders), a.shares, strict=True):
+            for courant, error, order, part in zip(a.courants, a.errors, (None, *a.orders), a.fractions, strict=True):
                 row = head | {"quantity": quantity, "norm": norm, "courant": courant, "error": error}
-                rows.append(row | {"order": order, "share_of_time_step": share})
+                rows.append(row | {"order": order, "fraction_of_time_step": part})
     return rows
 
 
 def particles_per_cell(record: Record) -> Rows:
-    """A row a particle count of each method and cell size that has several, for every quantity and norm."""
+    """Rows, one for each particle count of each method and cell size that has several, for every quantity and norm."""
     rows = []
     for quantity, norm in product(QUANTITIES, NORMS):
         for a in particle_axes(record.study.runs, record.results, quantity, norm):
@@ -171,7 +171,7 @@ def particles_per_cell(record: Record) -> Rows:
 
 
 def position(record: Record) -> Rows:
-    """A row a cell size of each series with replicates, for every quantity and norm."""
+    """Rows, one for each cell size of each series with replicates, for every quantity and norm."""
     rows = []
     for quantity, norm in product(QUANTITIES, NORMS):
         for a in position_axes(record.study.runs, record.results, quantity, norm):
@@ -183,16 +183,18 @@ def position(record: Record) -> Rows:
 
 
 def crossings(record: Record) -> dict[tuple[Head, int], float]:
-    """Faces of cells that a particle passed, by refinement and cells."""
-    every = [(series.head, run.cells, crossed(record.result(run))) for series in record.series for run in series.runs]
+    """Mean number of cell faces that a particle crossed, by refinement and cells."""
+    every = [
+        (series.head, run.cells, cell_crossings(record.result(run))) for series in record.series for run in series.runs
+    ]
     return {(head, cells): passed for head, cells, passed in every if passed is not None}
 
 
 def named(record: Record, plan: QuantityPlan[Any]) -> dict[str, Any]:
-    """What names a declared quantity."""
+    """Names and values that tell a planned quantity."""
     return joined(record.columns(plan.run), {"quantity": plan.quantity, "norm": plan.norm})
 
 
 def key(plan: QuantityPlan[Any]) -> Key:
-    """The same as a key."""
+    """Key of a planned quantity."""
     return plan.head, plan.quantity, plan.norm
