@@ -203,7 +203,7 @@ def test_a_failed_run_is_a_result(verify: Any, tmp_path: Path) -> None:
         (["column", "--limit", "0"], "limit = 0.0 must be above zero"),
         (["column", "--threads", "0"], "--threads takes whole numbers from 1 on"),
         (["column", "--smoothing", "rough"], "no smoothing 'rough'; choose from"),
-        (["sweep", "figure9"], "no study 'figure9'; choose from"),
+        (["sweep", "figure9"], "no study 'figure9' (did you mean figure8?); choose from"),
         (["sweep", "none.toml"], "cannot read none.toml"),
         (["sweep", "figure4", "--jobs", "0"], "--jobs takes whole numbers from 1 on"),
         (["sweep", "figure4", "--junit", "/dev/null/x.xml"], "cannot write --junit"),

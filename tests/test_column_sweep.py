@@ -54,7 +54,7 @@ def test_a_product_without_doubles(tmp_path: Path) -> None:
         ("[run", "cannot be read as TOML"),
         (
             "[runs]\nppc = 1",
-            "the file has 'runs', and may have case, title, words, finish, replicates, run, sweep, part",
+            r"the file has 'runs' \(did you mean run\?\), and may have case, title, words, finish, replicates",
         ),
         ("[run]\nparticles = 1", "column has no axis 'particles'; it has method, cells"),
         ("[sweep]\ncase = ['mms']", "column has no axis 'case'"),
@@ -86,7 +86,10 @@ def test_a_product_without_doubles(tmp_path: Path) -> None:
         ("[run]\nmaterial = 'truesdell'", "no material 'truesdell'"),
         ("finish = 2", "finish = 2 must be a whole number from 0 to the 1 runs"),
         ("words = 'many'", "words must be a list of sentences"),
-        (f"[sweep]\ncells = {list(range(2, 103))}\nppc = {[k * k for k in range(1, 101)]}", "10100 runs are asked for"),
+        (
+            f"[sweep]\ncells = {list(range(2, 103))}\nppc = {[k * k for k in range(1, 101)]}",
+            "10,100 runs are asked for, and 10,000 is the most",
+        ),
     ],
 )
 def test_what_is_wrong_is_said(text: str, says: str, tmp_path: Path) -> None:
@@ -97,7 +100,7 @@ def test_what_is_wrong_is_said(text: str, says: str, tmp_path: Path) -> None:
 
 
 def test_no_such_study(tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match="no study 'figure9'; choose from"):
+    with pytest.raises(ValueError, match=r"no study 'figure9' \(did you mean figure8\?\); choose from"):
         read("figure9", "")
     with pytest.raises(ValueError, match=r"cannot read .*none\.toml: no such file"):
         read(str(tmp_path / "none.toml"), "")

@@ -311,7 +311,7 @@ def test_several_materials_and_paths_are_told_apart(
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (["sand"], "no material 'sand'; choose from"),
+        (["sand"], "no material 'sand' (did you mean ubcsand?); choose from"),
         (["mohr_coulomb:psi=40"], "psi = 40.0 must lie between 0 and phi"),
         (["mohr_coulomb:nu=0.5"], "nu = 0.5 must lie between"),
         (["mohr_coulomb:E=-1"], "must be above zero"),
