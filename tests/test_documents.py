@@ -92,6 +92,21 @@ def test_a_dead_link_is_seen() -> None:
     assert dead(TOP / "README.md", text) == ["docs/nowhere.md", "docs/verdicts.md#no-such-heading", "no.png"]
 
 
+def gone(text: str) -> list[str]:
+    """Files of the project that are named in code, with their folder, and are not there."""
+    found = re.findall(r"`((?:solver|mms|cases|reports|verify|tests|docs)/[\w/.]+\.\w+)[`:]", text)
+    return sorted({path for path in found if "NAME" not in path and not (TOP / path).exists()})
+
+
+@each
+def test_files_that_are_named_are_there(file: Path) -> None:
+    assert not gone(file.read_text())
+
+
+def test_a_file_that_is_gone_is_seen() -> None:
+    assert gone("`cases/sweep.py`, `cases/harness/store.py`, `verify/run.py: conduct`") == ["cases/sweep.py"]
+
+
 def test_readme_leads_to_every_page() -> None:
     text = (TOP / "README.md").read_text()
     pages = {f"docs/{file.name}" for file in DOCS.glob("*.md")}
