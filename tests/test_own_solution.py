@@ -223,12 +223,12 @@ BAD: dict[str, tuple[dict[str, str], str]] = {
                     r"\(X, Y\) = \(1, 0\), t = 0.01, 1 of the largest motion; its normal traction is \d.*, \S+ of the "
                     r"largest stress. An edge that moves and is pulled is not supported yet"),
     "keys": ({"domain": ", 'sped': 1"}, r"domain returns .*; it must return a dictionary with lower"),
-    "numbers": ({"domain": ", 'duration': 'long'"}, r"domain has duration = 'long', which is no finite number$"),
+    "numbers": ({"domain": ", 'duration': 'long'"}, r"domain has duration = 'long', which is not a finite number$"),
     "corners": ({"domain": ", 'upper': (0, 1)"}, r"domain has upper = \(0, 1\), not above lower = \(0, 0\)$"),
     "three numbers": ({"domain": ", 'upper': (1, 1, 1)"}, r"domain has upper = \(1, 1, 1\); write two numbers$"),
     "time": ({"domain": ", 'duration': -1"}, r"domain has duration = -1, which must be above zero$"),
     "order": ({"domain": ", 'order': 0"}, r"domain has order = 0, which must be above zero$"),
-    "no time": ({"domain": ", 'duration': None"}, r"domain has duration = None, which is no finite number$"),
+    "no time": ({"domain": ", 'duration': None"}, r"domain has duration = None, which is not a finite number$"),
     "boundary in a list": ({"domain": ", 'boundary': ['fixed', ['free'], 3, None]"}, r"; write one of fixed, roller"),
     "boundary": ({"domain": ", 'boundary': 'sticky'"}, r"boundary = sticky; write one of fixed, roller, free, or four"),
     "boundary type": ({"domain": ", 'boundary': 3"}, r"boundary = 3; write one of fixed, roller, free, or four"),
@@ -239,8 +239,8 @@ BAD: dict[str, tuple[dict[str, str], str]] = {
         for name, said in {
             "material": r"; write a name with its parameters, such as 'neo_hookean:E=1e4,nu=0.3'$",
             "boundary": r"; write one of fixed, roller, free, or four of them for left, right, bottom, top$",
-            **dict.fromkeys(("lower", "upper"), r"(; write two numbers$|, which is no finite number$)"),
-            **dict.fromkeys(("duration", "speed", "order"), r", which is no finite number$"),
+            **dict.fromkeys(("lower", "upper"), r"(; write two numbers$|, which is not a finite number$)"),
+            **dict.fromkeys(("duration", "speed", "order"), r", which is not a finite number$"),
         }.items()
         for value in WRONG
         if (name, value) != ("boundary", "None")

@@ -247,7 +247,7 @@ def test_refusals(name: str) -> None:
         with pytest.raises(ValueError, match=says):
             create(SMOOTHINGS, f"{name}:{parameters}")
     for law in (Hypoelastic(rate="truesdell"), create("mpm_verify.solver.material", "neo_hookean")):
-        with pytest.raises(ValueError, match="must have a law in rate form"):
+        with pytest.raises(ValueError, match="must have a material in rate form"):
             model(name, law)
     with pytest.raises(ValueError, match="must be rate"):
         create(SMOOTHINGS, "fbar:of=stress")

@@ -11,8 +11,7 @@ import pytest
 
 from mpm_verify.solver.source_hash import TOP
 
-FOLDERS = ("solver", "mms")  # whose docstrings, comments, literals and names are read
-SENTENCES: tuple[str, ...] = ()  # whose literals alone are read: sentences that people see
+FOLDERS = ("solver", "mms", "cases", "reports", "verify")
 
 WORDS = {  # what to say: what not, in the sense that is meant
     "position, reference position": r"\bplaces\b|(?<!\bin )(?<!\btake )(?<!\btakes )\bplace\b",
@@ -25,10 +24,10 @@ WORDS = {  # what to say: what not, in the sense that is meant
     "fraction": (
         r"\b(?:a|an|the|this|its|their|each|no|as|by|in|largest|smallest|elastic|plastic) shares?\b|\bshares? of\b"
     ),
-    "not a number": r"\bno (?:finite |round |square |whole )?numbers?\b",
+    "not a number": r"(?<!\bthere )\b(?:is|are) no numbers?\b|\bno (?:finite|round|square|whole) numbers?\b",
     "time level, update-stress-last": r"\bhalf a step behind\b",
     "normal, tangential": (
-        r"\b(?:displacement|velocity|traction|stress|force|motion|component)s? (?:across|along)\b"
+        r"\b(?:displacement|velocity|traction|force|component)s? (?:across|along)\b"
         r"|\bacross and along\b|\balong and across\b"
     ),
     "blind spot": r"(?<!\bblind )\bspots?\b",
@@ -115,18 +114,11 @@ def kept(file: str, found: list[str]) -> list[str]:
 
 
 FILES = [file for folder in FOLDERS for file in sorted((TOP / folder).rglob("*.py"))]
-SPOKEN = [file for folder in SENTENCES for file in sorted((TOP / folder).rglob("*.py"))]
 
 
 @pytest.mark.parametrize("file", FILES, ids=lambda file: file.relative_to(TOP).as_posix())
 def test_the_words_of_the_product(file: Path) -> None:
     found = kept(file.relative_to(TOP).as_posix(), broken(file.read_text()))
-    assert not found, "\n".join(found)
-
-
-@pytest.mark.parametrize("file", SPOKEN, ids=lambda file: file.relative_to(TOP).as_posix())
-def test_the_words_of_sentences(file: Path) -> None:
-    found = kept(file.relative_to(TOP).as_posix(), list(said(literals(ast.parse(file.read_text()), documented=False))))
     assert not found, "\n".join(found)
 
 
@@ -136,8 +128,8 @@ def test_an_exception_is_needed(file: str, word: str) -> None:
 
 
 def test_many_files_are_read() -> None:
-    assert len(FILES) > 90
-    assert sum(len(list(docstrings(ast.parse(file.read_text())))) for file in FILES) > 500
+    assert len(FILES) > 200
+    assert sum(len(list(docstrings(ast.parse(file.read_text())))) for file in FILES) > 1500
 
 
 @pytest.mark.parametrize(
@@ -148,7 +140,7 @@ def test_many_files_are_read() -> None:
         ("material, constitutive model", "A law in rate form.", "The scaling law of the run-out; a lawn."),
         ("failed, inverted, left the grid", "A particle that lost its det F.", "Energy is lost, and digits."),
         ("fraction", "A share of the spacing.", "Results that share their material."),
-        ("not a number", "x is no finite number.", "x is not a finite number."),
+        ("not a number", "x is no finite number.", "A value is not a finite number; there is no number."),
         ("time level, update-stress-last", "v is half a step behind x.", "v has the level half a step before x."),
         ("normal, tangential", "The velocity along the wall.", "Points along a side, across the body."),
         ("blind spot", "One spot of many.", "A blind spot, spotted."),

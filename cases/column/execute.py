@@ -197,8 +197,11 @@ class Kept(Observer):
 
 
 def fields(model: Model) -> dict[str, Any]:
-    """Fields of the particles in the initial order, float32: x, v, F, sigma, m, J, corners, the memory of the
-    material by name, and where smoothing gives the forces another stress, that as sigma_smoothed."""
+    """Fields of the particles in the initial order, float32.
+
+    x, v, F, sigma, m, J, corners, the memory of the material by name, and where smoothing gives the forces another
+    stress, that as sigma_smoothed.
+    """
     p = model.particles
     found = {"x": p.x, "v": p.v, "F": p.F, "sigma": p.sigma, "m": p.m, "J": p.J}
     if p.sigma_smoothed.size:

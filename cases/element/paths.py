@@ -19,8 +19,10 @@ CYCLES = 3
 
 @dataclass(frozen=True)
 class Condition:
-    """Condition on a combination with `weights` of xx, yy, xy: of the strain, which goes through `fraction` of the
-    length of the path; or of the stress, which stays."""
+    """Condition on a combination with `weights` of xx, yy, xy.
+
+    Of the strain, which goes through `fraction` of the length of the path; or of the stress, which stays.
+    """
 
     of: Literal["strain", "stress"]
     weights: tuple[float, float, float]
@@ -42,8 +44,10 @@ def held(*weights: float) -> Condition:
 
 @dataclass(frozen=True)
 class PathSource:
-    """Content of the file of a path: columns that are `used`, that are not strains, and strains out of the plane that
-    are `zero` in every row; `largest` is the largest strain component."""
+    """Content of the file of a path: columns that are `used`, and those that are not strains.
+
+    Strains out of the plane are `zero` in every row; `largest` is the largest strain component.
+    """
 
     name: str
     used: tuple[str, ...]
@@ -54,8 +58,11 @@ class PathSource:
 
 @dataclass(frozen=True)
 class ElementTest:
-    """Element test. `length` of the path in strain; `shear`: its curves are of xy; `closed`: the volume is kept;
-    `cyclic`: to either side CYCLES times and back to the middle; `loose`: it starts at this fraction of the stress."""
+    """Element test, with the `length` of its path in strain.
+
+    `shear`: its curves are of xy; `closed`: the volume is kept; `cyclic`: to either side CYCLES times and back to the
+    middle; `loose`: it starts at this fraction of the stress.
+    """
 
     name: str
     title: str

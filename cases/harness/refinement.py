@@ -80,8 +80,10 @@ def _series(runs: Sequence[Run]) -> Series:
 def complete(
     runs: Sequence[Run], plans: Sequence[QuantityPlan[Any]], times: Sequence[float], replicates: int
 ) -> tuple[Run, ...]:
-    """The runs of a table of cells, and those that its judgement needs: half the time step on the finest cells where
-    an order is judged, the smaller Courant numbers `times` there, and `replicates` of each point.
+    """Runs of a table of cells, and those that its judgement needs.
+
+    These are half the time step on the finest cells where an order is judged, the smaller Courant numbers `times`
+    there, and `replicates` of each point.
     """
     largest: dict[Head, int] = {}
     for run in runs:

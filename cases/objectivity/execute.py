@@ -78,8 +78,7 @@ def prescribed(run: Block) -> tuple[Curves, tuple[Check, ...], dict[str, float]]
 
 
 def control_checks() -> list[Check]:
-    """Checks that each negative control misses by a tenth of the stress in few steps along the stretched turn, and no
-    rate does."""
+    """Checks that negative controls, and no rates, miss by a tenth of the stress in few steps of the stretched turn."""
     checks = []
     for name in (*available(NEGATIVE_CONTROLS), *available(RATES)):
         miss = float(kinematic.order_errors(name, (COARSE,))[0])

@@ -39,13 +39,13 @@ ROOM = 0.25  # fraction of the largest displacement by which a free edge may mov
 
 
 def edges(solution: Any) -> Any:
-    """What the boundary does, in a body of the solution's own material."""
+    """Edges of the body, of the solution's own material."""
     from mpm_verify.mms.edges import examine
     from mpm_verify.mms.manufacture import manufacture
     from mpm_verify.solver.plugins import MATERIALS, create
 
-    law = create(MATERIALS, solution.material)
-    return examine(solution, manufacture(solution, law, law.rho0), law)
+    material = create(MATERIALS, solution.material)
+    return examine(solution, manufacture(solution, material, material.rho0), material)
 
 
 class Own:

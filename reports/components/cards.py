@@ -49,7 +49,7 @@ def cards(record: Record) -> list[Card]:
 
 
 def summary(record: Record) -> str:
-    """Summary such as `4 of 5 judged quantities PASS, 1 INCONCLUSIVE.`"""
+    """Summary such as `4 of 5 judged quantities PASS, 1 INCONCLUSIVE`."""
     counts = Counter(str(f.verdict.outcome) for f in record.findings if f.plan.judged)
     total = counts.total()
     if not total:

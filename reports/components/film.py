@@ -20,10 +20,11 @@ EACH = 4_000
 
 @dataclass(frozen=True)
 class Film:
-    """Film. `data`: base64 of unsigned 16-bit numbers, little-endian: x and y of each particle, frame after frame;
-    65535 is outside the picture.
+    """Film of particles, as the page draws it.
 
-    `bands`: one character a particle, its colour; `wide`, `high`: what the whole range is, in m; `times` in s.
+    `data`: base64 of unsigned 16-bit numbers, little-endian: x and y of each particle, frame after frame; 65535 is
+    outside the picture. `bands`: one character a particle, its colour; `wide`, `high`: what the whole range is, in m;
+    `times` in s.
     """
 
     label: str

@@ -61,5 +61,5 @@ def unread(n: Numbers) -> str:
 
 
 def missed(n: Numbers) -> str:
-    """Sentence such as `2 of 30 checks did not pass; they stand first.`"""
+    """Sentence such as `2 of 30 checks did not pass; they stand first`."""
     return f"{n['missed']:g} of {n['checks']:g} checks did not pass; they stand first."

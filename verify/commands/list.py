@@ -26,8 +26,7 @@ REMARKS = {RATES: " (of the materials in rate form)", NEGATIVE_CONTROLS: " (nega
 
 
 def list_plugins() -> None:
-    """List cases, methods, transfers, smoothings, layouts, solutions, materials, rates, negative controls
-    and studies with a line about each."""
+    """List cases, plug-ins of every kind and studies, with a line about each."""
     with printing():
         for package in PACKAGES:
             typer.echo(f"{KINDS[package]}s{REMARKS.get(package, '')}")
