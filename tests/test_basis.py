@@ -373,7 +373,7 @@ def test_domains_tile_the_body_and_follow_det_f(ppc: int) -> None:
 
 @pytest.mark.parametrize("ppc", [0, -4, 2, 3, 5, 8])
 def test_counts_that_are_no_squares(ppc: int) -> None:
-    with pytest.raises(ValueError, match="no square number"):
+    with pytest.raises(ValueError, match="not a square number"):
         rectangle(np.zeros(2), np.ones(2), 0.1, ppc)
 
 
