@@ -118,7 +118,7 @@ def test_refused_in_one_line(specification: str, words: str) -> None:
 
 
 def test_a_ring_is_refused_before_anything_runs() -> None:
-    with pytest.raises(ValueError, match="rectangles along the axes; choose uniform"):
+    with pytest.raises(ValueError, match="rectangles with sides in x and y; choose uniform"):
         fixtures.built(solution=("expanding_ring",), layout=("graded",))
     assert fixtures.built(solution=("expanding_ring",)).runs
 
