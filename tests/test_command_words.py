@@ -114,7 +114,7 @@ def test_a_parameter_of_a_method_is_read_before_a_run() -> None:
     """And one that is at its default is none."""
     with pytest.raises(ValueError, match="cpdi has no parameter 'limt'"):
         build(Asked("mms", {"method": ["cpdi:limt=1"], "cells": [8]}), "", "t")
-    with pytest.raises(ValueError, match="limit='wide' is no number"):
+    with pytest.raises(ValueError, match="limit='wide' is not a number"):
         build(Asked("mms", {"method": ["cpdi:limit=wide"], "cells": [8]}), "", "t")
     (run, *_) = build(Asked("mms", {"method": ["cpdi:limit=0.50"], "cells": [8], "ppc": [1]}), "", "t").runs
     assert run.method == "cpdi:limit=0.5"
