@@ -184,7 +184,7 @@ def test_parameters_are_named(name: str) -> None:
     assert "rho0" in own
     with pytest.raises(ValueError, match=f"{name} has no parameter 'G'; it has {own}"):
         create("mpm_verify.solver.material", f"{name}:G=1")
-    with pytest.raises(ValueError, match="is no number"):
+    with pytest.raises(ValueError, match="is not a number"):
         create("mpm_verify.solver.material", f"{name}:rho0=soft")
     with pytest.raises(ValueError, match=r"rho0 = -1.* must"):
         create("mpm_verify.solver.material", f"{name}:rho0=-1")
