@@ -291,7 +291,7 @@ def test_whose_a_folder_is(store: Store, text: str, says: str) -> None:
     with pytest.raises(StoreError, match=says) as told:
         case_of(store.folder)
     assert "\n" not in str(told.value)
-    with pytest.raises(StoreError, match=r"is no study folder: it holds no study\.json"):
+    with pytest.raises(StoreError, match=r"is not a study folder: it has no study\.json"):
         case_of(store.folder / "runs")
 
 
