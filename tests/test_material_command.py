@@ -221,7 +221,7 @@ def test_parameters_say_what_they_do() -> None:
     assert [usual[name].partition(" ")[2] for name in factors] == ["(no effect in primary loading)"] * 6
     assert usual["Rf"].startswith("0.7708770538 (not in the paper's Table 2; ")
     assert "1.1 N^-0.15" in usual["Rf"]
-    assert usual["reversal"].startswith("0 (1 is our reading")
+    assert usual["reversal"].startswith("0 (1 is how we read")
     cyclic = told_of(ubcsand.Ubcsand(reversal=1.0))
     told = [cyclic[name].partition(" ")[2] for name in factors]
     assert told == ["(in the stiffness after a reversal)"] * 2 + ["(no effect)"] * 4
