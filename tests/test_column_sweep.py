@@ -69,7 +69,7 @@ def test_a_product_without_doubles(tmp_path: Path) -> None:
         ("[run]\ndamping = false", "damping = False: input should be a valid number"),
         ("[run]\nvoid = 1", "void = 1: input should be a valid boolean"),
         ("[run]\noffset = [0.1]", "offset"),
-        ("[run]\ncells = 100000", "at most 1000"),
+        ("[run]\ncells = 100000", "from 2 to 1000"),
         ("[run]\nchannel = 7.3", "channel = 7.3 must make whole cells"),
         ("[run]\ng = 1e300", "must be at most 1e4"),
         ("[run]\nmaterial = 'mohr_coulomb:rho0=1e-300'", "steps would be needed"),
