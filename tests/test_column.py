@@ -246,7 +246,7 @@ def test_measures_of_known_shapes() -> None:
     [
         ({"ppc": 3}, "not a square number"),
         ({"cells": 1}, "choose whole numbers from 2 to"),
-        ({"cells": 2000}, "at most 1000"),
+        ({"cells": 2000}, "from 2 to 1000"),
         ({"channel": 7.3}, "must make whole cells"),
         ({"g": 1e300}, "must be at most"),
         ({"material": "mohr_coulomb:rho0=1e-300"}, "steps would be needed"),

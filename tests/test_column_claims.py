@@ -55,7 +55,7 @@ def test_particles() -> None:
     assert [claim.reproduced for claim in failed.values()] == [False] * 4
     assert said([ran(ppc=4), ran(ppc=9)], "ppc")[ClaimCode.HEIGHT_UNDER_WITH_ONE].reproduced is None
     weak = said([ran(0.7, 0.1, ppc=1, crowding=2.0), ran(0.91, 0.16, ppc=9)], "ppc")
-    told = "2.00 times with 1 per cell the volume of the space that they fill: those runs are weak"
+    told = "than the space that they fill, 2.00 times with 1 per cell: those runs are weak"
     assert told in words.found(weak[ClaimCode.FRONT_OVER])
     moving = said([ran(0.7, 0.14, ppc=1), ran(0.91, 0.16, ppc=9, creep=0.2)], "ppc")
     assert moving[ClaimCode.HEIGHT_RISES].reproduced is None

@@ -242,7 +242,7 @@ def test_strains_that_may_be_percentages(tmp_path: Path) -> None:
     write(tmp_path, "exx,eyy,gxy\n0,0,0\n0,0.5,0\n")
     assert from_file(path).points[1, 1] == 0.5
     write(tmp_path, "exx,eyy,gxy\n0,0,0\n0,-10.5,0\n")
-    with pytest.raises(ValueError, match=r"line 3: eyy = -10.5 is a strain of -10.5, beyond 10"):
+    with pytest.raises(ValueError, match=r"line 3: eyy = -10.5 is a strain of -10.5; write strains up to 10"):
         from_file(path, "fraction")
     write(tmp_path, "exx [%],eyy [%],gxy [%]\n0,0,0\n0,-1.0,0\n")
     np.testing.assert_allclose(from_file(path, "percent").points[:, 1], [0, -0.01])

@@ -103,7 +103,7 @@ def front_over(claim: Claim) -> str:
     text = f"The front comes to {fronts(claim)}; the experiment's band is {band(claim.known.front)}."
     crowded = [one for one in claim.runs if one.crowding > claim.numbers["crowded"]]
     named = " and ".join(f"{one.crowding:.2f} times with {value(claim.axis, one.value)}" for one in crowded)
-    weak = f" But particles keep {named} the volume of the space that they fill: those runs are weak evidence."
+    weak = f" But particles keep more volume than the space that they fill, {named}: those runs are weak evidence."
     return text + (weak if crowded else "")
 
 
