@@ -208,6 +208,7 @@ return [drawn, right / canvas.width, box.querySelector("output").textContent];
 """
 
 
+@pytest.mark.slow  # ten seconds
 def test_a_film_plays(browser: webdriver.Chrome, tmp_path: Path) -> None:
     """Its frames are drawn, the sand moves to the right, and the button plays and pauses it."""
     look(browser, column(tmp_path), 1280)

@@ -322,7 +322,11 @@ def test_a_dry_run_of_a_file_runs_nothing(
 
 @pytest.mark.parametrize(
     ("words", "made"),
-    [(["--yes", "--no-page"], set()), (["--yes"], {"report.html"}), (["--vtk"], {"report.html", "vtk"})],
+    [
+        (["--yes", "--no-page"], set()),
+        pytest.param(["--yes"], {"report.html"}, marks=pytest.mark.slow),  # eight seconds each, for the page
+        pytest.param(["--vtk"], {"report.html", "vtk"}, marks=pytest.mark.slow),
+    ],
     ids=["yes", "page", "vtk"],
 )
 def test_options_of_a_file_are_what_they_say(

@@ -114,6 +114,7 @@ def test_what_a_sweep_says(swept: Path) -> None:
     assert text.count('class="film"') == 6
 
 
+@pytest.mark.slow  # five seconds of pages
 def test_twice_is_once(verify: Any, swept: Path) -> None:
     """Nothing is computed again, and the page is the same to the byte."""
     before = {file: (file.read_bytes(), file.stat().st_mtime_ns) for file in (swept / "runs").iterdir()}
@@ -134,6 +135,7 @@ def test_a_report_is_made_again(verify: Any, swept: Path) -> None:
     assert (swept / "report.html").read_bytes() == page
 
 
+@pytest.mark.slow  # five seconds of pages
 def test_what_is_missing_is_run(verify: Any, swept: Path) -> None:
     """A study that was stopped goes on: the run that is not there, and no other."""
     store = Store(swept, "column")
@@ -151,6 +153,7 @@ def test_what_is_missing_is_run(verify: Any, swept: Path) -> None:
     assert {file: file.stat().st_mtime_ns for file in others} == others
 
 
+@pytest.mark.slow  # five seconds of pages
 def test_curves_that_cannot_be_read_cost_figures_alone(verify: Any, swept: Path, tmp_path: Path) -> None:
     """Checks and numbers stand, and the exit code; the file is named, its film is gone, the others' are there."""
     folder = Path(copytree(swept, tmp_path / "out"))

@@ -290,6 +290,7 @@ def test_what_axis_aligned_cannot_see(plant: Plant) -> None:
     assert finest(found) == pytest.approx(finest(sweep(nothing, "axis_aligned")), rel=0.03)
 
 
+@pytest.mark.slow  # five seconds
 def test_no_half_step_start() -> None:
     """Invisible to sin(wt), which starts without acceleration; order one with clamped_shear's 1 - cos(wt)."""
     blind = sweep(nothing, "axis_aligned", staggered=False)

@@ -73,9 +73,12 @@ def ask(folder: Path, *words: str) -> tuple[int, str]:
     "words",
     [
         ("material", "ubcsand", "--test", "isotropic", "--test", "undrained", "--steps", "8"),
-        ("column", "--cells", "2", "--ppc", "4", "--duration", "0.1"),
+        pytest.param(
+            ("column", "--cells", "2", "--ppc", "4", "--duration", "0.1"),
+            marks=pytest.mark.slow,  # two columns' pages
+        ),
     ],
-    ids=lambda words: words[0],
+    ids=["material", "column"],
 )
 def test_no_outcome_depends_on_words(words: tuple[str, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     usual = ask(tmp_path / "one" / "out", *words)

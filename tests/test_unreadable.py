@@ -38,7 +38,9 @@ def cut(store: Path) -> list[Path]:
     return files
 
 
-@pytest.mark.parametrize("case", STUDIES)
+@pytest.mark.parametrize(
+    "case", [pytest.param(case, marks=[pytest.mark.slow] if case == "column" else []) for case in STUDIES]
+)
 def test_verdicts_stand_without_arrays(
     case: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
