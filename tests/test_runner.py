@@ -1,6 +1,8 @@
 """The runner: what is stored is not run again, on any executor, whatever becomes of a single run."""
 
+import contextlib
 import os
+import signal
 from collections.abc import Callable
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from dataclasses import replace
@@ -11,7 +13,7 @@ import fixtures_study as fixtures
 import numpy as np
 import pytest
 
-from mpm_verify.cases.harness.runner import RunnerError, Ticker, cost, pending, process_pool, run_study
+from mpm_verify.cases.harness.runner import RunnerError, Ticker, cost, interruptible, pending, process_pool, run_study
 from mpm_verify.cases.harness.store import Arrays, Store, StoreError
 from mpm_verify.cases.harness.study import Study
 from mpm_verify.cases.mms import execute as mms
@@ -137,6 +139,17 @@ def test_ticker_tells_at_most_a_few_times_a_second(monkeypatch: pytest.MonkeyPat
 
 def tick_once(digest: str) -> None:
     Ticker.tell((digest, 0.5))
+
+
+def test_an_interrupt_that_was_swallowed_ends_the_run_all_the_same() -> None:
+    with interruptible():
+        Ticker("run")(0.1)
+        with contextlib.suppress(KeyboardInterrupt):  # as a library does that tries an import
+            signal.raise_signal(signal.SIGINT)
+        with pytest.raises(KeyboardInterrupt):
+            Ticker("run")(0.2)
+    Ticker("run")(0.3)
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
 def test_workers_tell_their_news() -> None:

@@ -170,12 +170,12 @@ def shown(record: "Record", page: Path | None) -> None:
 
 def compute(study: "Study[Any]", store: Any, settings: Settings) -> dict[str, Any]:
     """Run the study, and give its Results; in this process if there is little to do or one job is asked for."""
-    from mpm_verify.cases.harness.runner import InProcess, Ticker, cost, pending, process_pool, run_study
+    from mpm_verify.cases.harness.runner import InProcess, Ticker, cost, interruptible, pending, process_pool, run_study
     from mpm_verify.verify.terminal.progress import progress
 
     waiting = pending(study, store)
     jobs = min(jobs_of(settings), max(1, len(waiting)))
-    with progress(waiting, cost) as bar:
+    with interruptible(), progress(waiting, cost) as bar:
         if jobs > 1 and sum(map(cost, waiting)) > SMALL:
             with process_pool(jobs, study.case) as (executor, heard):
                 return run_study(study, store, executor, settings.threads, bar.done, lambda: bar.hear(heard()))

@@ -73,16 +73,39 @@ class Ticker:
 
     tell: ClassVar[Callable[[tuple[str, float]], None]] = staticmethod(lambda news: None)
     PAUSE = 0.25  # seconds
+    stopped: ClassVar[bool] = False  # by Ctrl-C, see interruptible
 
     def __init__(self, digest: str) -> None:
         self.digest, self.last = digest, time.monotonic()
 
     def __call__(self, fraction: float) -> None:
-        """Tell that the run has done this fraction of its steps."""
+        """Tell that the run has done this fraction of its steps. Raises KeyboardInterrupt where Ctrl-C was pressed."""
+        if Ticker.stopped:
+            raise KeyboardInterrupt
         now = time.monotonic()
         if now - self.last > self.PAUSE:
             self.last = now
             type(self).tell((self.digest, fraction))
+
+
+@contextmanager
+def interruptible() -> Iterator[None]:
+    """Let Ctrl-C end a run at its next step even where a library that is being imported takes the exception."""
+
+    def stop(number: int, frame: object) -> None:
+        Ticker.stopped = True
+        raise KeyboardInterrupt
+
+    Ticker.stopped = False
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, stop)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+        Ticker.stopped = False
 
 
 def run_study(
