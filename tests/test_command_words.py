@@ -47,6 +47,7 @@ def test_a_near_name_is_told(verify: Call, name: str) -> None:
     arguments, meant = MEANT[name]
     line = one_line(verify(*arguments))
     assert f"did you mean {meant}?" in line.lower()
+    assert line.lower().count("did you mean") == 1
 
 
 @pytest.mark.parametrize(

@@ -161,8 +161,8 @@ def complain(message: str, code: int = USAGE) -> int:
     if message.startswith("No such command"):
         from mpm_verify.solver.plugins import meant
 
-        near = meant(message.split("'")[1], files())
-        message = f"{message.removesuffix('.')}{near}; choose from {', '.join(files())}"
+        word = message.split("'")[1]
+        message = f"no command {word!r}{meant(word, files())}; choose from {', '.join(files())}"
     before, possible, names = message.partition("(Possible options: ")
     if possible:
         message = f"{before}(did you mean {names.removesuffix(')')}?)"
