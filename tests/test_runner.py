@@ -142,6 +142,7 @@ def tick_once(digest: str) -> None:
 
 
 def test_an_interrupt_that_was_swallowed_ends_the_run_all_the_same() -> None:
+    before = signal.getsignal(signal.SIGINT)
     with interruptible():
         Ticker("run")(0.1)
         with contextlib.suppress(KeyboardInterrupt):  # as a library does that tries an import
@@ -149,7 +150,7 @@ def test_an_interrupt_that_was_swallowed_ends_the_run_all_the_same() -> None:
         with pytest.raises(KeyboardInterrupt):
             Ticker("run")(0.2)
     Ticker("run")(0.3)
-    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    assert signal.getsignal(signal.SIGINT) is before
 
 
 def test_workers_tell_their_news() -> None:
