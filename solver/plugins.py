@@ -1,8 +1,8 @@
 """Plug-ins: each is a file whose name is the word on the command line; its class has that name in CamelCase.
 
 A plug-in may be a user's file, path/to/own.py or path/to/own.py:key=value; of a case, see the contract in
-cases/harness/contract.py. A package with a module `_own`
-makes a class of it in its own way, `_own.load(path)`; of the others the file holds the class.
+cases/harness/contract.py. A package with a module `_own` makes a class of it in its own way, `_own.load(path)`; of
+the others the file holds the class.
 """
 
 import re

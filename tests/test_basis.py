@@ -141,7 +141,7 @@ def spline(degree: int) -> Any:
 
 
 def reference_cpdi(x: Floats, F: Floats, r0: Floats) -> tuple[Floats, Floats]:
-    """From the corners; not from side vectors."""
+    """Weights of CPDI from the corners; not from side vectors."""
     r1, r2 = (F @ r0.T).T
     return quadrilateral(np.array([x - r1 - r2, x + r1 - r2, x + r1 + r2, x - r1 + r2]))
 
@@ -195,7 +195,7 @@ def test_against_plain_numpy(name: str, kind: str) -> None:
 
 @pytest.mark.parametrize("name", BASES)
 def test_a_narrower_box_is_refused_on_each_side(name: str) -> None:
-    """The box that just holds all neighbours is taken; one column or row less on any side is not."""
+    """The box that just holds all support nodes is taken; one column or row less on any side is not."""
     rng = np.random.default_rng(3)
     for kind in KINDS[name]:
         for x, F, r0 in zip(*particles(rng, kind), strict=True):
@@ -227,7 +227,7 @@ def test_nan_in_a_domain_refuses_the_block(name: str, entry: int) -> None:
 
 @pytest.mark.parametrize("stretch", [np.nan, 0.0, 8.0])
 def test_cpgimp_refuses_what_its_neighbours_cannot_hold(stretch: float) -> None:
-    """At a quarter turn F_xx is nothing, and beyond half lengths of a cell four nodes do not suffice."""
+    """Refusal: at a quarter turn F_xx is nothing, and beyond half lengths of a cell four nodes do not suffice."""
     x, F, r0 = particles(np.random.default_rng(5), "near I")
     F[3, 1, 1] = stretch
     assert not fill("cpgimp", x, F, r0).ok

@@ -134,7 +134,7 @@ def spoilt(record: Record, spoil: Callable[[tuple[Check, ...]], tuple[Check, ...
 
 
 def closed_form(block: Block, tick: object) -> tuple[dict[str, Any], None]:
-    """In place of a run of the block: its closed form with a ripple."""
+    """Stand-in for a run of the block: its closed form with a ripple."""
     t = np.linspace(0.02, 2, 100)
     angle = np.pi / 2 * np.maximum(0, t - 1)
     ripple = 1 + 0.02 * block.L * np.sin(20 * t)

@@ -233,7 +233,7 @@ def test_names_are_those_of_folders() -> None:
 
 @pytest.mark.parametrize(("case", "field"), [pair for pair in EVERY if pair[1] not in ("path", "units")])
 def test_another_value_is_another_folder(case: str, field: str, here: str) -> None:
-    """Of every field: one value after the other, and both, have different names."""
+    """Names by every field: one value after the other, and both, have different names."""
     both = asked(case, field, here)[field]
     names = [named(Asked(case, {field: chosen})) for chosen in ([both[0]], [both[-1]], both)]
     assert len(set(names)) == min(3, 1 + len(both[1:]) * 2)

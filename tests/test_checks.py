@@ -299,7 +299,7 @@ def test_the_closest_call() -> None:
 
 
 def test_the_document_has_what_came_out(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of each examination: its lead, its findings as codes with numbers, its parameters with where they come from."""
+    """Document: its lead, its findings as codes with numbers, its parameters with where they come from."""
     study = stored(tmp_path, GOOD)
     record = Record(Store(tmp_path, "element"), study, {}, earlier=False)
     found = Analysis((), (GOOD,), ElementAnalysis({"soil": examination(GOOD)}))
@@ -331,7 +331,7 @@ def ask(words: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.Captur
 def test_report_makes_the_page_of_an_examination_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """By the case of its study; what is stored is read, nothing runs."""
+    """The page is found by the case of its study; what is stored is read, nothing runs."""
     run(tmp_path, GOOD, BAD)
     page = tmp_path / "out" / "report.html"
     first = page.read_bytes()
@@ -347,7 +347,7 @@ def test_report_makes_the_page_of_an_examination_again(
 def test_report_of_a_folder_that_cannot_be_drawn(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Of another case, without any run, or broken: one line."""
+    """A folder of another case, without any run, or broken: one line."""
     (run,) = stored(tmp_path, GOOD).runs
     study = tmp_path / "study.json"
     whole = study.read_bytes()

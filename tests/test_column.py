@@ -202,7 +202,7 @@ def test_without_what_keeps_it_alive() -> None:
 
 
 def test_the_stress_at_first() -> None:
-    """At rest: vertical stress of the weight above, K0 of Jaky; oedometric: admissible, of the material's own path."""
+    """At rest, vertical stress of the weight above, K0 of Jaky; oedometric: admissible, of the material's own path."""
     model, _ = setup(replace(SMALL, start="k0"))
     p = model.particles
     weight = 2650 * 10 * (SMALL.height - p.x[:, 1])

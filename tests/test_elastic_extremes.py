@@ -129,7 +129,7 @@ def test_hypoelastic_of_equal_stretches(rate: str, pressure: float, stretch: flo
 
 @pytest.mark.parametrize("wrong", [1e-10, -1e-10])
 def test_a_wrong_digit_would_be_seen(wrong: float) -> None:
-    """Of the comparison with forty digits: a shear modulus that is off by as little misses it."""
+    """Sharpness of the comparison with forty digits: a shear modulus that is off by as little misses it."""
     law, F = NeoHookean(), (1.2, 0.3, -0.1, 0.9)
     with mpmath.workdps(40):
         right, size = exactly(law, F)

@@ -197,7 +197,7 @@ def test_a_strain_out_of_the_plane_that_is_zero_is_taken(name: str, tmp_path: Pa
 
 
 def test_other_columns_are_named(tmp_path: Path) -> None:
-    """By name, or by number where they have none; a column without name and content is nobody's."""
+    """Columns told by name, or by number where they have none; a column without name and content is nobody's."""
     test = from_file(write(tmp_path, ",time,exx,eyy,gxy,note,\n0,0,0,0,0,,\n1,1,0.003,-0.01,0,end,\n"))
     assert test.source is not None
     assert test.source.unused == ("column 1 without a name", "time", "note")

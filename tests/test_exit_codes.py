@@ -212,7 +212,7 @@ class Own(LinearElastic):
 
 @pytest.mark.parametrize("end", ENDS[:2])
 def test_a_file_cannot_end_a_run(tmp_path: Path, end: str) -> None:
-    """In the midst of a time step, in this process."""
+    """End in the midst of a time step, in this process."""
     path = tmp_path / "own.py"
     path.write_text(MATERIAL.format(end=end))
     words = ("mms", "--material", str(path), "--cells", "8", "--ppc", "1", "--jobs", "1", "--out", "study")

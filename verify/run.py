@@ -277,10 +277,15 @@ def study_of(asked: "Asked", out: Path | None) -> "tuple[Study[Any], Path]":
     from mpm_verify.cases.harness.build import named
     from mpm_verify.cases.harness.reuse import study
 
-    folder = out or Path("results") / named(asked)
+    folder = folder_of(named(asked), out)
     return study(asked, command(), folder), folder
 
 
 def named(study: "Study[Any]", out: Path | None) -> Path:
     """Folder of a study: the one asked for, or the usual."""
-    return out or Path("results") / study.name
+    return folder_of(study.name, out)
+
+
+def folder_of(name: str, out: Path | None) -> Path:
+    """Folder asked for, or the usual one of that name."""
+    return out or Path("results") / name

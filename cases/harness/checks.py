@@ -39,7 +39,7 @@ class Check:
 
     @property
     def outcome(self) -> Outcome:
-        """PASS, FAIL, or ERROR where there is no number."""
+        """Outcome: PASS, FAIL, or ERROR where the value is not a number."""
         if not isfinite(self.found):
             return Outcome.ERROR
         if self.way == "at least":
