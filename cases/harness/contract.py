@@ -28,12 +28,12 @@ from typing import Any
 
 from pydantic import TypeAdapter
 
-from mpm_verify.cases.harness.study import ResultRecord, RunRecord, Study
+from mpm_verify.cases.harness.study import REFINED, ResultRecord, RunRecord, Study
 from mpm_verify.cases.judging.records import Expectation
 from mpm_verify.solver.own_file import guarded, module_of
 from mpm_verify.solver.plugins import CASES, available, is_file, meant
 
-REFINES = ("method", "cells", "ppc", "courant", "offset")  # fields of a Run whose errors are judged on refinement
+REFINES = ("method", "ppc", *REFINED)  # fields of a Run whose errors are judged on refinement
 
 
 @dataclass(frozen=True, eq=False)
