@@ -1,7 +1,7 @@
 """Exact fields as a kernel: one call gives u, v, F, sigma and b for a block of particles.
 
-Written out as Python source from the hoisted expressions, and compiled by the same kernel() as the solver. The source
-file stands in the kernel cache, with what it is compiled to, named by its content.
+Its source, of mms/kernel_source.py, is compiled by the same kernel() as the solver. The file is in the kernel cache,
+with what it is compiled to, named by its content.
 """
 
 import hashlib
@@ -13,11 +13,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import sympy as sp
-from sympy.printing.pycode import PythonCodePrinter
 
-from mpm_verify.mms.derive import Fields
-from mpm_verify.mms.hoist import Hoist
+from mpm_verify.mms.printed import function
 from mpm_verify.solver._jit import F1, function_type, i8, kept_in, nothing
 from mpm_verify.solver.source_hash import source_hash
 from mpm_verify.solver.state import Floats
@@ -25,18 +22,7 @@ from mpm_verify.solver.state import Floats
 EXACT = nothing(F1, F1, i8, F1)  # columns[C*b + c], scalars[s], particles in the block, out[row*BLOCK + b]
 Exact = function_type(EXACT)
 ROWS = {"u": (0, 1), "v": (2, 3), "F": (4, 5, 6, 7), "sigma": (8, 9, 10, 11), "b": (12, 13)}  # of `out`
-EXACT_WHOLE = 2**53  # beyond, whole numbers are not integers that Numba can type
 ROOM = 16  # rows of `out`, two of them scratch for logarithms
-
-HEADER = '''"""Generated from a manufactured solution; not for editing."""
-import math
-from mpm_verify.solver._jit import BLOCK, kernel
-from mpm_verify.mms.exact import EXACT
-
-
-@kernel(EXACT)
-def exact(c, s, n, out):
-'''
 
 
 @dataclass(frozen=True)
@@ -48,83 +34,21 @@ class ExactKernel:
     scalars: Callable[[float, float], Floats]
 
 
-def compile_exact(fields: Fields) -> ExactKernel:
-    """Make a kernel of the fields: hoist, find common subexpressions, print, compile."""
-    tv = sp.Symbol("t_velocity", real=True)
-    hoist = Hoist(fields.X, (fields.t, tv))
-    inner = {symbol: hoist(e) for symbol, e in fields.inner.items()}
-    rows = [hoist(e) for e in fields.u]
-    rows += [hoist(e.xreplace({fields.t: tv})) for e in fields.v]
-    rows += [sp.Symbol(str(f), real=True) for f in list(fields.inner)[:4]]
-    rows += [whole_numbers(e) for e in fields.sigma + fields.b]
-    source = HEADER + _body(inner, rows, hoist)
-    columns = sp.lambdify(fields.X, list(hoist.columns), cse=True)
-    scalars = sp.lambdify((fields.t, tv), list(hoist.scalars), cse=True)
+def compiled(source: str, columns_source: str, scalars_source: str) -> ExactKernel:
+    """Kernel of three sources that mms/kernel_source.py writes."""
+    columns, scalars = function(columns_source), function(scalars_source)
 
     def columns_of(X: Floats) -> Floats:
-        table = np.empty((len(X), max(1, len(hoist.columns))))
-        for c, values in enumerate(columns(X[:, 0], X[:, 1])):
-            table[:, c] = values
+        values = columns(X[:, 0], X[:, 1])
+        table = np.empty((len(X), max(1, len(values))))
+        for c, value in enumerate(values):
+            table[:, c] = value
         return table
 
     def scalars_at(t: float, t_velocity: float) -> Floats:
         return np.array([*scalars(t, t_velocity), 0.0], dtype=np.float64)
 
     return ExactKernel(_load(source), columns_of, scalars_at)
-
-
-class Printer(PythonCodePrinter):
-    """Printer of small whole powers as products: Numba makes a loop of x**(-2), and a vectoriser passes loops by."""
-
-    def _print_Pow(self, expr: sp.Pow, rational: bool = False) -> str:
-        base, exponent = expr.as_base_exp()
-        if not (exponent.is_Integer and 0 < abs(int(exponent)) < 9):
-            return str(super()._print_Pow(expr, rational=rational))
-        product = "*".join([f"({self._print(base)})"] * abs(int(exponent)))
-        return f"({product})" if exponent > 0 else f"(1.0/({product}))"
-
-
-def whole_numbers(expression: sp.Expr) -> sp.Expr:
-    """Write J**(-2.0) as J**(-2): with a whole exponent it is two products, with another a call of pow()."""
-    return sp.sympify(expression).replace(
-        lambda e: e.is_Float and abs(e) < EXACT_WHOLE and float(e).is_integer(), lambda e: sp.Integer(int(e))
-    )
-
-
-def _body(inner: dict[sp.Symbol, sp.Expr], rows: list[sp.Expr], hoist: Hoist) -> str:
-    """Statements of the kernel: arguments of logarithms, logarithms, all the rest.
-
-    Three loops, because a call of log() keeps the compiler from working on eight particles at once.
-    """
-    rows = [row.xreplace(inner) if row in inner and inner[row].is_number else row for row in rows]
-    logs = sorted(set().union(*(row.atoms(sp.log) for row in rows)), key=str)[: ROOM - 14]
-    names = sp.symbols(f"log0:{len(logs)}")
-    rows = [row.xreplace(dict(zip(logs, names, strict=True))) for row in rows]
-    width = max(1, len(hoist.columns))
-    fetch = [f"{c} = c[{width} * b + {k}]" for k, c in enumerate(hoist.columns.values())]
-    kept = [f"{name} = out[{14 + k} * BLOCK + b]" for k, name in enumerate(names)]
-    scratch = [(f"out[{14 + k} * BLOCK + b]", log.args[0]) for k, log in enumerate(logs)]
-    results = [(f"out[{r} * BLOCK + b]", row) for r, row in enumerate(rows)]
-    logarithms = [f"{target} = math.log({target})" for target, _ in scratch]
-    text = "".join(f"    {s} = s[{k}]\n" for k, s in enumerate(hoist.scalars.values()))
-    text += _loop(fetch + _statements(inner, scratch)) + _loop(logarithms)
-    return text + _loop(fetch + kept + _statements(inner, results))
-
-
-def _loop(statements: list[str]) -> str:
-    return "    for b in range(n):\n" + "".join(f"        {s}\n" for s in statements or ["pass"])
-
-
-def _statements(inner: dict[sp.Symbol, sp.Expr], targets: list[tuple[str, sp.Expr]]) -> list[str]:
-    """Assignments to `targets`, common subexpressions first; inner symbols that occur are computed before them."""
-    used: set[sp.Symbol] = set().union(*(e.free_symbols for _, e in targets)) if targets else set()
-    given = [(symbol, e) for symbol, e in inner.items() if symbol in used]
-    early, first = sp.cse([e for _, e in given], symbols=sp.numbered_symbols("v"))
-    late, last = sp.cse([e for _, e in targets], symbols=sp.numbered_symbols("w"))
-    order = [*early, *zip([s for s, _ in given], first, strict=True), *late]
-    order += zip([target for target, _ in targets], last, strict=True)
-    printer = Printer()
-    return [f"{target} = {printer.doprint(expression)}" for target, expression in order]
 
 
 def _load(source: str) -> Any:

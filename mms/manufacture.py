@@ -1,17 +1,21 @@
 """manufacture(): a displacement and a material become exact fields and the body force that makes them a solution."""
 
+import json
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-import sympy as sp
 
-from mpm_verify.mms.derive import Expressions, Fields, Solution, derive
-from mpm_verify.mms.energy import Energy
-from mpm_verify.mms.exact import ExactKernel, compile_exact
+from mpm_verify.mms.energy import Energy, check_energy
+from mpm_verify.mms.printed import folder, function, kept, printed
 from mpm_verify.solver.state import Floats
+
+if TYPE_CHECKING:
+    from mpm_verify.mms.derive import Fields, Solution
+    from mpm_verify.mms.exact import ExactKernel
 
 Field = Callable[[Floats, float], Floats]
 
@@ -22,11 +26,23 @@ class Manufactured:
 
     Parameters
     ----------
-    fields
-        Expressions that the functions are made from.
+    solution, material, rho0
+        What they are derived from, at the first use.
+    folder
+        Where printed functions are kept; None where they are printed anew.
     """
 
-    fields: Fields
+    solution: "Solution"
+    material: Energy
+    rho0: float
+    folder: Path | None = None
+
+    @cached_property
+    def fields(self) -> "Fields":
+        """Expressions that the functions are printed from."""
+        from mpm_verify.mms.derive import derive
+
+        return derive(self.solution, self.material, self.rho0)
 
     def x(self, X: Floats, t: float) -> Floats:
         """Position x (P,2), a length."""
@@ -35,40 +51,55 @@ class Manufactured:
     @cached_property
     def u(self) -> Field:
         """Displacement u (P,2), a length."""
-        return self._function(self.fields.u, (2,))
+        return self._function("u", (2,))
 
     @cached_property
     def v(self) -> Field:
         """Velocity v (P,2), length per time."""
-        return self._function(self.fields.v, (2,))
+        return self._function("v", (2,))
 
     @cached_property
     def F(self) -> Field:
         """Deformation gradient F (P,2,2), rows the components of the position."""
-        return self._function(self.fields.F, (2, 2))
+        return self._function("F", (2, 2))
 
     @cached_property
     def P(self) -> Field:
         """First Piola stress P (P,2,2), rows the components of the traction."""
-        return self._function(self.fields.P, (2, 2))
+        return self._function("P", (2, 2))
 
     @cached_property
     def sigma(self) -> Field:
         """Cauchy stress sigma (P,4): xx, yy, zz, xy, tension positive."""
-        return self._function(self.fields.sigma, (4,))
+        return self._function("sigma", (4,))
 
     @cached_property
     def b(self) -> Field:
         """Body force per mass b (P,2), length per time squared."""
-        return self._function(self.fields.b, (2,))
+        return self._function("b", (2,))
 
     @cached_property
-    def kernel(self) -> ExactKernel:
+    def kernel(self) -> "ExactKernel":
         """Fields as one compiled kernel for blocks of particles."""
-        return compile_exact(self.fields)
+        from mpm_verify.mms.exact import compiled
 
-    def _function(self, expressions: Expressions, shape: tuple[int, ...]) -> Field:
-        compiled: Any = sp.lambdify((*self.fields.X, self.fields.t), self.fields.full(expressions), "numpy", cse=True)
+        return compiled(*json.loads(self.text("kernel", self._kernel_source)))
+
+    def text(self, name: str, make: Callable[[], str]) -> str:
+        """Text that was derived of the fields, from the folder or made anew."""
+        return kept(self.folder / name, make) if self.folder else make()
+
+    def _kernel_source(self) -> str:
+        from mpm_verify.mms.kernel_source import write
+
+        return json.dumps(write(self.fields))
+
+    def _function(self, name: str, shape: tuple[int, ...]) -> Field:
+        def source() -> str:
+            f = self.fields
+            return printed((*f.X, f.t), f.full(getattr(f, name)))
+
+        compiled = function(self.text(name, source))
 
         def evaluate(X: Floats, t: float) -> Floats:
             values = [np.broadcast_to(value, len(X)) for value in compiled(X[:, 0], X[:, 1], t)]
@@ -77,7 +108,7 @@ class Manufactured:
         return evaluate
 
 
-def manufacture(solution: Solution, material: Energy, rho0: float) -> Manufactured:
+def manufacture(solution: "Solution", material: Energy, rho0: float, name: str = "") -> Manufactured:
     """Make exact fields, and the body force that they need, from a displacement.
 
     The source term comes from the material's energy by differentiation, never from the stress the solver computes.
@@ -90,6 +121,8 @@ def manufacture(solution: Solution, material: Energy, rho0: float) -> Manufactur
         Constitutive model with an energy.
     rho0
         Density at reference, in the units of the material.
+    name
+        Hash of all that the first three stand for: what is derived is kept on disk by it. Derived anew without one.
 
     Returns
     -------
@@ -101,4 +134,8 @@ def manufacture(solution: Solution, material: Energy, rho0: float) -> Manufactur
     ValueError
         For a material without an energy; it names those that have one.
     """
-    return Manufactured(derive(solution, material, rho0))
+    check_energy(material)
+    made = Manufactured(solution, material, rho0, folder(f"{name} {rho0!r}", __name__) if name else None)
+    if not name:
+        made.fields  # noqa: B018  what cannot be derived is said here, not at the first use
+    return made

@@ -67,7 +67,7 @@ def check(runs: Sequence[Run]) -> None:
             check_solution(solution, material, tuple(sorted(counts)))
         mine = [run for run in runs if (run.solution, run.material) == (specification, model) and not run.force]
         if mine:
-            check_time_steps(specification, solution, material, mine, sorted({run.courant for run in mine}))
+            check_time_steps(mine, sorted({run.courant for run in mine}))
 
 
 def parts(asked: Asked) -> list[Asked]:

@@ -3,25 +3,22 @@
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
 from math import sqrt
 from typing import Any
 
 import numpy as np
 
 from mpm_verify.cases.harness.environment import environment
-from mpm_verify.cases.harness.identity import identity
 from mpm_verify.cases.harness.memory import forget_peak, peak_memory
 from mpm_verify.cases.harness.progress import Progress
 from mpm_verify.cases.harness.study import Arrays, parameters
+from mpm_verify.cases.mms.exact import audited, manufactured
 from mpm_verify.cases.mms.gaps import LOOKS, Gaps
 from mpm_verify.cases.mms.norms import Norms, compare, new_sums
 from mpm_verify.cases.mms.packing import Packing
 from mpm_verify.cases.mms.run import QUANTITIES, Result, Run
 from mpm_verify.cases.mms.time_step import time_steps, width
-from mpm_verify.mms.audit import audit
-from mpm_verify.mms.blind_spots import BlindSpot
-from mpm_verify.mms.manufacture import Manufactured, manufacture
+from mpm_verify.mms.manufacture import Manufactured
 from mpm_verify.solver.boundary import box, moving
 from mpm_verify.solver.failure import Failure, FailureKind, RunFailed
 from mpm_verify.solver.layout import CENTRED, Layout, parallelograms
@@ -106,31 +103,6 @@ def velocity_gradient(exact: Manufactured, X: Floats, t: float, short: float) ->
     rate = (exact.F(X, t + short) - exact.F(X, t - short)) / (2 * short)
     L: Floats = rate @ np.linalg.inv(exact.F(X, t))
     return L
-
-
-def manufactured(solution: str, material: str) -> Manufactured:
-    """Exact solution of two specifications, derived and compiled once in a process for what they now stand for."""
-    return _manufactured(solution, material, _now(solution, material))
-
-
-def audited(solution: str, material: str) -> tuple[BlindSpot, ...]:
-    """Findings of the audit of two specifications, once in a process for what they now stand for."""
-    return _audited(solution, material, _now(solution, material))
-
-
-def _now(solution: str, material: str) -> tuple[str, str]:
-    return identity(SOLUTIONS, solution), identity(MATERIALS, material)
-
-
-@cache
-def _manufactured(solution: str, material: str, now: tuple[str, str]) -> Manufactured:
-    model: Any = create(MATERIALS, material)
-    return manufacture(create(SOLUTIONS, solution), model, model.rho0)
-
-
-@cache
-def _audited(solution: str, material: str, now: tuple[str, str]) -> tuple[BlindSpot, ...]:
-    return audit(manufactured(solution, material), create(SOLUTIONS, solution), create(MATERIALS, material)).spots
 
 
 def execute(run: Run, tick: Callable[[float], None] = lambda fraction: None) -> tuple[Result, Arrays]:

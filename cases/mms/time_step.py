@@ -1,15 +1,17 @@
 """Time steps of a study against the stability limit of the solver, before anything runs."""
 
 import shlex
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from math import ceil, floor, log10
 from typing import Any
 
 import numpy as np
 
+from mpm_verify.cases.mms.exact import manufactured
 from mpm_verify.cases.mms.run import Run
-from mpm_verify.solver.plugins import is_file, label, parameters_of, split
+from mpm_verify.mms.manufacture import Manufactured
+from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS, create, is_file, label, parameters_of, split
 
 CELLS, TIMES = 32, 9  # where and when the velocity at the start is looked at
 SLACK = 1e-3  # of that velocity: particles lie elsewhere
@@ -17,14 +19,14 @@ MOST_STEPS = 10_000_000
 LEAST_COURANT = 1e-3
 
 
-def check_time_steps(
-    specification: str, solution: Any, material: Any, runs: Iterable[Run], courants: Sequence[float]
-) -> None:
+def check_time_steps(runs: Sequence[Run], courants: Sequence[float]) -> None:
     """Raise ValueError, with what to type, where a run takes a step above the stable one: dt > dx / (c + |v|).
 
-    `courants` are those that were asked for, the largest last. What passes here also runs: |v| is the largest over the
-    body in the half step before the start.
+    The runs are of one solution in one material; `courants` are those that were asked for, the largest last. What
+    passes here also runs: |v| is the largest over the body in the half step before the start.
     """
+    specification, model = runs[0].solution, runs[0].material
+    solution, material = create(SOLUTIONS, specification), create(MATERIALS, model)
     steps = {(run.cells, run.courant): time_steps(solution, width(solution) / run.cells, run.courant) for run in runs}
     longest = max(count for count, _ in steps.values())
     if longest > MOST_STEPS:
@@ -33,19 +35,15 @@ def check_time_steps(
             f"{solution.duration:g}; take a shorter duration or a lower reference speed"
         )
     lag = 0.5 * max(dt for _, dt in steps.values())
-    c, v = float(material.wave_speed()), fastest(solution, lag)
+    c, v = float(material.wave_speed()), fastest(solution, manufactured(specification, model), lag)
     if any(dt * (c + v) > width(solution) / cells for (cells, _), (_, dt) in steps.items()):
         raise ValueError(refusal(specification, solution, c, v, courants))
 
 
-def fastest(solution: Any, lag: float) -> float:
+def fastest(solution: Any, exact: Manufactured, lag: float) -> float:
     """Largest speed of the body over the times from -lag to 0, sampled, with some slack."""
-    import sympy as sp
-
-    X, t = sp.symbols("X Y", real=True), sp.Symbol("t", real=True)
-    velocity = sp.lambdify((*X, t), list(solution.displacement(X, t).diff(t)), "numpy", cse=True)
-    corners = solution.layout(width(solution) / CELLS, 4).corners.reshape(-1, 2).T
-    most = max(float(np.hypot(*velocity(*corners, time)).max()) for time in np.linspace(-lag, 0.0, TIMES))
+    corners = solution.layout(width(solution) / CELLS, 4).corners.reshape(-1, 2)
+    most = max(float(np.hypot(*exact.v(corners, time).T).max()) for time in np.linspace(-lag, 0.0, TIMES))
     return most * (1 + SLACK)
 
 

@@ -1,0 +1,137 @@
+"""What is derived of a solution is kept on disk, by what it stands for, and gives the same bits without SymPy."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import sympy as sp
+
+from mpm_verify.mms.manufacture import manufacture
+from mpm_verify.mms.printed import folder, function, kept, printed
+from mpm_verify.solver import cache_folder
+from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS, available, create
+
+X = np.random.default_rng(7).uniform(0.76, 0.9, (9, 2))  # inside every body of the library
+FIELDS = ("u", "v", "F", "P", "sigma", "b")
+
+ASK = """
+import json, sys
+import numpy as np
+from mpm_verify.cases.mms.exact import audited, manufactured
+exact = manufactured("clamped_shear", "neo_hookean")
+X = np.array([[0.3, 0.4], [0.61, 0.17]])
+values = {q: getattr(exact, q)(X, 0.37).tolist() for q in ("u", "v", "F", "P", "sigma", "b")}
+values["columns"] = exact.kernel.columns(X).tolist()
+values["scalars"] = exact.kernel.scalars(0.37, 0.36).tolist()
+spots = [repr(spot) for spot in audited("clamped_shear", "neo_hookean")]
+print(json.dumps([values, spots, "sympy" in sys.modules]))
+"""
+
+
+@pytest.fixture
+def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A kernel cache of its own."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setattr(cache_folder, "base", lambda: home)
+    home = tmp_path / "mpm-verify"
+    home.mkdir()
+    return home
+
+
+def test_second_process_needs_no_sympy(tmp_path: Path) -> None:
+    """It gives every number of the first one, which derived them, in every digit."""
+    env = {**os.environ, "XDG_CACHE_HOME": str(tmp_path)}
+    first, second = (
+        json.loads(subprocess.run([sys.executable, "-c", ASK], env=env, capture_output=True, check=True).stdout)
+        for _ in range(2)
+    )
+    assert first[:2] == second[:2]
+    assert (first[2], second[2]) == (True, False)
+
+
+@pytest.mark.parametrize("name", available(SOLUTIONS))
+def test_kept_functions_give_the_same_bits(name: str, cache: Path) -> None:
+    solution, material = create(SOLUTIONS, name), create(MATERIALS, "neo_hookean")
+    derived = manufacture(solution, material, material.rho0)
+    written, read = (manufacture(solution, material, material.rho0, "a name") for _ in range(2))
+    for field in FIELDS:
+        expected = getattr(derived, field)(X, 0.1)
+        np.testing.assert_array_equal(getattr(written, field)(X, 0.1), expected)
+        np.testing.assert_array_equal(getattr(read, field)(X, 0.1), expected)
+    assert "fields" in vars(written)
+    assert "fields" not in vars(read)  # nothing was derived
+
+
+def test_printed_function_is_the_expression() -> None:
+    """And has NumPy's names: a logarithm, pi, a sine."""
+    x, t = sp.symbols("x t")
+    source = printed((x, t), [sp.log(x) * sp.pi + sp.sin(sp.pi * t) ** 2, x - t])
+    np.testing.assert_allclose(function(source)(2.0, 0.25), [np.log(2) * np.pi + 0.5, 1.75], rtol=1e-15)
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        ("axis_aligned:A=0.02", "neo_hookean"),
+        ("axis_aligned", "neo_hookean:nu=0.2"),
+        ("axis_aligned", "linear_elastic"),
+    ],
+)
+def test_another_problem_has_another_folder(other: tuple[str, str], cache: Path) -> None:
+    """Another parameter or another solution: the body force of one problem never serves another."""
+    from mpm_verify.cases.mms.exact import manufactured
+
+    here, there = manufactured("axis_aligned", "neo_hookean"), manufactured(*other)
+    assert here.folder != there.folder
+    assert not np.array_equal(here.b(X, 0.1), there.b(X, 0.1))
+
+
+def test_changed_source_has_another_folder(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of what derives, and of SymPy and NumPy, which print and compute it."""
+    import mpm_verify.mms.printed as module
+
+    names = [folder("n", "mpm_verify.mms.manufacture"), folder("m", "mpm_verify.mms.manufacture")]
+    with monkeypatch.context() as patch:
+        patch.setattr(module, "source_hash", lambda name: "edited")
+        names.append(folder("n", "mpm_verify.mms.manufacture"))
+    with monkeypatch.context() as patch:
+        patch.setattr(module, "_sympy", lambda: "0.0")
+        names.append(folder("n", "mpm_verify.mms.manufacture"))
+    assert len(set(names)) == 4
+    assert folder("n", "mpm_verify.mms.manufacture") == names[0]
+
+
+def test_user_file_that_changes_is_derived_anew(tmp_path: Path, cache: Path) -> None:
+    from mpm_verify.cases.mms.exact import manufactured
+
+    file = tmp_path / "mine.py"
+    text = (
+        "from sympy import *\ndef displacement(X, t): return [{A}*sin(pi*X[0])*sin(t), 0]\ndomain = lambda: {domain}\n"
+    )
+    domain = {"lower": (0, 0), "upper": (1, 1), "duration": 1.0, "speed": 40.0}
+    values = []
+    for A in (0.01, 0.02):
+        file.write_text(text.format(A=A, domain=domain))
+        values.append(manufactured(str(file), "neo_hookean").u(X, 0.5))
+    np.testing.assert_allclose(values[1], 2 * values[0], rtol=1e-14)
+
+
+def test_full_disk_costs_time_alone(tmp_path: Path) -> None:
+    """Nothing can be written where a file stands for the folder; the text is made each time."""
+    blocked = tmp_path / "file"
+    blocked.write_text("")
+    assert [kept(blocked / "u", lambda: "made") for _ in range(2)] == ["made", "made"]
+
+
+def test_nothing_is_left_of_a_write_that_failed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(self: Path, text: str, **kwargs: object) -> int:
+        self.touch()
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(Path, "write_text", full)
+    assert kept(tmp_path / "u", lambda: "made") == "made"
+    assert list(tmp_path.iterdir()) == []
