@@ -4,13 +4,13 @@ import json
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mpm_verify.mms.energy import Energy, check_energy
-from mpm_verify.mms.printed import folder, function, kept, printed
+from mpm_verify.mms.printed import folder, function, printed
+from mpm_verify.solver.cache_folder import kept
 from mpm_verify.solver.state import Floats
 
 if TYPE_CHECKING:
@@ -29,13 +29,13 @@ class Manufactured:
     solution, material, rho0
         What they are derived from, at the first use.
     folder
-        Where printed functions are kept; None where they are printed anew.
+        Folder of the kernel cache where printed functions are kept; none where they are printed anew.
     """
 
     solution: "Solution"
     material: Energy
     rho0: float
-    folder: Path | None = None
+    folder: str = ""
 
     @cached_property
     def fields(self) -> "Fields":
@@ -87,7 +87,7 @@ class Manufactured:
 
     def text(self, name: str, make: Callable[[], str]) -> str:
         """Text that was derived of the fields, from the folder or made anew."""
-        return kept(self.folder / name, make) if self.folder else make()
+        return kept(self.folder, name, make) if self.folder else make()
 
     def _kernel_source(self) -> str:
         from mpm_verify.mms.kernel_source import write
@@ -135,7 +135,7 @@ def manufacture(solution: "Solution", material: Energy, rho0: float, name: str =
         For a material without an energy; it names those that have one.
     """
     check_energy(material)
-    made = Manufactured(solution, material, rho0, folder(f"{name} {rho0!r}", __name__) if name else None)
+    made = Manufactured(solution, material, rho0, folder(f"{name} {rho0!r}", __name__) if name else "")
     if not name:
         made.fields  # noqa: B018  what cannot be derived is said here, not at the first use
     return made

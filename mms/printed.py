@@ -5,17 +5,13 @@ What is kept stands in the folder of the kernel cache, below the hash of what it
 
 import hashlib
 import inspect
-import os
 from collections.abc import Callable, Sequence
-from contextlib import suppress
 from functools import cache
 from importlib.metadata import version
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mpm_verify.solver.cache_folder import kernel_folder
 from mpm_verify.solver.source_hash import source_hash
 
 if TYPE_CHECKING:
@@ -37,27 +33,12 @@ def function(source: str) -> Callable[..., Any]:
     return made
 
 
-def folder(name: str, module: str) -> Path:
-    """Folder of what `module` derives from what `name` stands for."""
+def folder(name: str, module: str) -> str:
+    """Folder in the kernel cache of what `module` derives from what `name` stands for."""
     text = repr((name, source_hash(module), _sympy(), np.__version__))
-    return kernel_folder(f"{module.rpartition('.')[2]}-{hashlib.sha256(text.encode()).hexdigest()[:24]}")
+    return f"{module.rpartition('.')[2]}-{hashlib.sha256(text.encode()).hexdigest()[:24]}"
 
 
 @cache
 def _sympy() -> str:
     return version("sympy")
-
-
-def kept(file: Path, make: Callable[[], str]) -> str:
-    """Text of a file, made where it is missing. It is written whole or not at all, and a full disk costs time alone."""
-    with suppress(OSError):
-        return file.read_text(encoding="utf-8")
-    text = make()
-    temporary = file.with_name(f"{file.name}.{os.getpid()}")
-    try:
-        temporary.write_text(text, encoding="utf-8")
-        os.replace(temporary, file)
-    except OSError:
-        with suppress(OSError):
-            temporary.unlink()
-    return text

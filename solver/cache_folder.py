@@ -1,6 +1,7 @@
-"""The folder of what can be made again: compiled kernels. Ours alone, and tidied.
+"""The folder of what can be made again: compiled kernels, and texts that take time to make. Ours alone, and tidied.
 
-It holds a folder for each kernel file, NAME-HASH, which is removed when no process has used it for a month.
+It holds folders NAME-HASH, one for each kernel file and each kind of text. A folder is removed when no process has used
+it for a month.
 """
 
 import atexit
@@ -11,7 +12,7 @@ import shutil
 import stat
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
@@ -59,6 +60,28 @@ def kernel_folder(name: str) -> Path:
             os.utime(folder)
         tidy()
     return folder
+
+
+def kept(folder: str, name: str, make: Callable[[], str]) -> str:
+    """Text `name` of a folder of the cache, made where it is missing.
+
+    It is written whole or not at all; where nothing can be written, on a full disk, it is made each time.
+    """
+    try:
+        file = kernel_folder(folder) / name
+        return file.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        text = make()
+    except OSError:
+        return make()
+    temporary = file.with_name(f"{name}.{os.getpid()}")
+    try:
+        temporary.write_text(text, encoding="utf-8")
+        os.replace(temporary, file)
+    except OSError:
+        with suppress(OSError):
+            temporary.unlink()
+    return text
 
 
 def tidy() -> None:

@@ -4,16 +4,21 @@ The import closure is found in the text, nothing is imported. An import inside a
 compute; one below TYPE_CHECKING does not. Of `from package import module` the module counts, and the package's own
 `__init__` only where the name is not a module. Of a package file only `mpm_verify` is followed, of a user's file also
 what lies beside it. A tree is taken without comments, docstrings, annotations of functions and what a ValueError says:
-none of them can change a number. To parse all that a case imports takes 0.1 s, so trees are kept in no file.
+none of them can change a number. To parse all that a case imports takes 0.1 s, so the hashes of trees are kept on disk,
+by the contents of the files.
 """
 
 import ast
 import hashlib
+import json
+import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
+
+from mpm_verify.solver.cache_folder import kept
 
 TOP = Path(__file__).absolute().parent.parent  # the folder of the installed package; links stay as they are
 PACKAGE = "mpm_verify"
@@ -63,11 +68,16 @@ def find(module: str, folder: Path | None = None) -> Path | None:
     """File of a module of mpm_verify, or of one beside a user's file; None for any other."""
     first, *rest = module.split(".")
     if first == PACKAGE:
-        path = TOP.joinpath(*rest)
-    elif folder is not None and first:
-        path = folder.joinpath(first, *rest)
-    else:
-        return None
+        return _shipped(module)
+    return _at(folder.joinpath(first, *rest), module) if folder is not None and first else None
+
+
+@cache
+def _shipped(module: str) -> Path | None:
+    return _at(TOP.joinpath(*module.split(".")[1:]), module)
+
+
+def _at(path: Path, module: str) -> Path | None:
     files = (path.with_name(f"{path.name}.py"), path / "__init__.py", path.parent / f"{module}.py")
     return next((file for file in files if file.is_file()), None)
 
@@ -95,10 +105,21 @@ def _ours(file: Path) -> Tree:
 
 
 def parse(content: bytes) -> Tree:
-    """Tree of a source text. Raises SyntaxError."""
+    """Tree of a source text, known by its content or parsed. Raises SyntaxError."""
+    digest, imports = json.loads(kept(_folder(), hashlib.sha256(content).hexdigest(), lambda: _parsed(content)))
+    return Tree(digest, tuple((level, module, name) for level, module, name in imports))
+
+
+@cache
+def _folder() -> str:
+    made_by = Path(__file__).read_bytes() + repr(sys.version_info[:2]).encode()
+    return f"trees-{hashlib.sha256(made_by).hexdigest()[:24]}"
+
+
+def _parsed(content: bytes) -> str:
     imports: list[tuple[int, str, str | None]] = []
     text = _spelled(ast.parse(content), imports)
-    return Tree(hashlib.sha256(text.encode()).hexdigest(), tuple(dict.fromkeys(imports)))
+    return json.dumps([hashlib.sha256(text.encode()).hexdigest(), list(dict.fromkeys(imports))])
 
 
 def _spelled(node: Any, imports: list[tuple[int, str, str | None]]) -> str:

@@ -47,5 +47,11 @@ class Tree:
 
 def forget() -> None:
     """As a new process: no hash is remembered."""
-    for remembered in (source_hash.source_hash, source_hash._ours, identity._shipped, identity._digest):
+    for remembered in (
+        source_hash.source_hash,
+        source_hash._ours,
+        source_hash._shipped,
+        identity._shipped,
+        identity._digest,
+    ):
         remembered.cache_clear()

@@ -11,8 +11,9 @@ import pytest
 import sympy as sp
 
 from mpm_verify.mms.manufacture import manufacture
-from mpm_verify.mms.printed import folder, function, kept, printed
+from mpm_verify.mms.printed import folder, function, printed
 from mpm_verify.solver import cache_folder
+from mpm_verify.solver.cache_folder import kept
 from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS, available, create
 
 X = np.random.default_rng(7).uniform(0.76, 0.9, (9, 2))  # inside every body of the library
@@ -34,7 +35,9 @@ print(json.dumps([values, spots, "sympy" in sys.modules]))
 
 @pytest.fixture
 def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A kernel cache of its own."""
+    """A cache of its own for printed texts; the kernels of the materials are compiled before, into the usual one."""
+    for name in ("neo_hookean", "linear_elastic"):
+        create(MATERIALS, name)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     monkeypatch.setattr(cache_folder, "base", lambda: home)
     home = tmp_path / "mpm-verify"
@@ -120,18 +123,17 @@ def test_user_file_that_changes_is_derived_anew(tmp_path: Path, cache: Path) -> 
     np.testing.assert_allclose(values[1], 2 * values[0], rtol=1e-14)
 
 
-def test_full_disk_costs_time_alone(tmp_path: Path) -> None:
+def test_full_disk_costs_time_alone(cache: Path) -> None:
     """Nothing can be written where a file stands for the folder; the text is made each time."""
-    blocked = tmp_path / "file"
-    blocked.write_text("")
-    assert [kept(blocked / "u", lambda: "made") for _ in range(2)] == ["made", "made"]
+    (cache / "blocked").write_text("")
+    assert [kept("blocked", "u", lambda: "made") for _ in range(2)] == ["made", "made"]
 
 
-def test_nothing_is_left_of_a_write_that_failed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_nothing_is_left_of_a_write_that_failed(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def full(self: Path, text: str, **kwargs: object) -> int:
         self.touch()
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(Path, "write_text", full)
-    assert kept(tmp_path / "u", lambda: "made") == "made"
-    assert list(tmp_path.iterdir()) == []
+    assert kept("texts", "u", lambda: "made") == "made"
+    assert list((cache / "texts").iterdir()) == []

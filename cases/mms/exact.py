@@ -3,13 +3,13 @@
 import json
 from dataclasses import asdict
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 from mpm_verify.cases.harness.identity import identity
 from mpm_verify.mms.blind_spots import BlindSpot, SpotCode
 from mpm_verify.mms.manufacture import Manufactured, manufacture
-from mpm_verify.mms.printed import folder, kept
+from mpm_verify.mms.printed import folder
+from mpm_verify.solver.cache_folder import kept
 from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS, create
 
 Names = tuple[str, str]
@@ -42,9 +42,9 @@ def _manufactured(solution: str, material: str, now: Names) -> Manufactured:
 
 @cache
 def _audited(solution: str, material: str, now: Names) -> tuple[BlindSpot, ...]:
-    file: Path = folder(_named(solution, material, now), "mpm_verify.mms.audit") / "blind_spots"
-    found = json.loads(kept(file, lambda: json.dumps([asdict(spot) for spot in _audit(solution, material)])))
-    return tuple(BlindSpot(SpotCode(spot["code"]), spot["blind"], spot["numbers"]) for spot in found)
+    where = folder(_named(solution, material, now), "mpm_verify.mms.audit")
+    text = kept(where, "blind_spots", lambda: json.dumps([asdict(spot) for spot in _audit(solution, material)]))
+    return tuple(BlindSpot(SpotCode(spot["code"]), spot["blind"], spot["numbers"]) for spot in json.loads(text))
 
 
 def _audit(solution: str, material: str) -> tuple[BlindSpot, ...]:
