@@ -260,6 +260,7 @@ def test_dry_run(verify: Call, idle: None, tmp_path: Path, name: str) -> None:
     *runs, last = out.splitlines()
     assert all(line.startswith("to do   ") for line in runs)
     assert len({line.split()[2] for line in runs}) == len(runs) > 0
+    assert len({line.split(maxsplit=3)[3] for line in runs}) == len(runs)  # each says what it is
     assert f": {len(runs)} run{'s' * (len(runs) > 1)} to be done, 0 stored, up to " in last
     assert content(tmp_path) == []
 

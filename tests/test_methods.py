@@ -21,7 +21,7 @@ def run(*arguments: str) -> tuple[int, str]:
 @pytest.mark.slow
 def test_all_methods_on_the_bar(tmp_path: Path) -> None:
     """Each does what is registered; CPDI beats what stalls at the same cost, and the table says so."""
-    code, text = run("methods", "--quick", "--out", str(tmp_path), "--jobs", "1")
+    code, text = run("methods", "--quick", "--page", "--out", str(tmp_path), "--jobs", "1")
     assert code == 0
     assert f"{len(available(METHODS))} of {len(available(METHODS))} judged quantities PASS." in text
     assert (tmp_path / "figures" / "cost.pdf").stat().st_size > 5000

@@ -82,28 +82,42 @@ def study_command(
     """
     axes = [item for item in fields(run) if item.name not in leave_out]
     hints = get_type_hints(run)
-    parameters = [
-        inspect.Parameter(
-            item.name, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=option(item, hints, usual)
-        )
-        for item in axes
-    ]
-    for key, (annotation, default) in {**(more or {}), **COMMON}.items():
-        parameters.append(
-            inspect.Parameter(key, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=annotation)
-        )
+    own = {item.name: (option(item, hints, usual), None) for item in axes} | dict(more or {})
     names = [item.name for item in axes]
 
     def call(**given: Any) -> int:
         asked = {key: given.pop(key) for key in names}
         return function(asked={key: text for key, text in asked.items() if text}, **given)
 
-    call.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
-    call.__annotations__ = {item.name: item.annotation for item in parameters}
     call.__doc__ = function.__doc__
     flags = frozenset(item.name for item in axes if hints[item.name] is bool)
     command = type("Command", (StudyCommand,), {"flags": flags})
-    app.command(name, cls=command)(call)
+    app.command(name, cls=command)(signed(call, own))
+
+
+def common(function: Callable[..., int]) -> Callable[..., int]:
+    """Command with the options that all studies have, beside those in the signature of the function.
+
+    It gets `out`, and the others as `**more`, keywords of Settings.
+    """
+
+    def call(**given: Any) -> int:
+        return function(**given)
+
+    call.__doc__, parameters = function.__doc__, inspect.signature(function).parameters.values()
+    typed = [item for item in parameters if item.name != "out" and item.kind is not inspect.Parameter.VAR_KEYWORD]
+    return signed(call, {item.name: (item.annotation, item.default) for item in typed})
+
+
+def signed(call: Callable[..., int], own: Mapping[str, tuple[Any, Any]]) -> Callable[..., int]:
+    """Give a function the signature that Typer reads: annotation and default of its own options, then the common."""
+    parameters = [
+        inspect.Parameter(key, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=annotation)
+        for key, (annotation, default) in {**own, **COMMON}.items()
+    ]
+    call.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+    call.__annotations__ = {item.name: item.annotation for item in parameters}
+    return call
 
 
 def option(item: Any, hints: Mapping[str, Any], usual: Mapping[str, Any]) -> Any:

@@ -3,9 +3,9 @@
 import os
 import shlex
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import KW_ONLY, dataclass
+from dataclasses import KW_ONLY, dataclass, fields
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
@@ -237,10 +237,19 @@ def told_plan(study: "Study[Any]", store: Any, settings: Settings) -> int:
 
     needed = estimate(study, store, settings)
     with printing():
-        for run in study.runs:
-            typer.echo(f"{'stored ' if store.get(run.digest) else 'to do  '} {run.digest}  {run}")
+        for run, text in zip(study.runs, told_apart(study.runs), strict=True):
+            typer.echo(f"{'stored ' if store.get(run.digest) else 'to do  '} {run.digest}  {text}")
         typer.echo(f"{study.name}: {needed}")
     return 0
+
+
+def told_apart(runs: Sequence[Any]) -> list[str]:
+    """Texts of runs; where two are the same, each has the values of all fields that vary."""
+    texts = [str(run) for run in runs]
+    if len(set(texts)) == len(texts):
+        return texts
+    names = [item.name for item in fields(runs[0]) if len({getattr(run, item.name) for run in runs}) > 1]
+    return [", ".join([str(run), *(f"{name}={getattr(run, name)}" for name in names)]) for run in runs]
 
 
 def duration(seconds: float) -> str:

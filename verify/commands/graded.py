@@ -1,13 +1,13 @@
 """`verify graded`: uniform layouts of particles against layouts that are finer where strain is expected."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from mpm_verify.solver.plugins import METHODS, SOLUTIONS
 from mpm_verify.verify.choices import choices, completion, integers
-from mpm_verify.verify.options import DryRun, Jobs, Json, Out, Page, Yes, split
+from mpm_verify.verify.options import common, split
 
 if TYPE_CHECKING:
     from mpm_verify.cases.mms.graded import Plan
@@ -37,12 +37,9 @@ def graded(
         float, typer.Option(help="Particles per length where strain is largest, over those where there is none.")
     ] = 2.0,
     power: Annotated[float, typer.Option(help="Exponent of the strain that particles per length follow.")] = 0.25,
-    jobs: Jobs = None,
-    out: Out = None,
-    json_output: Json = False,
-    page: Page = None,
-    dry_run: DryRun = False,
-    yes: Yes = False,
+    *,
+    out: Path | None,
+    **more: Any,
 ) -> int:
     """Error against cost of uniform, graded and thinned layouts. Nothing is judged: exit code 3."""
     from mpm_verify.verify.run import Settings, command, conduct, named, usage
@@ -60,10 +57,7 @@ def graded(
             power,
         )
         study = build_graded(plan, command(), name(plan))
-    settings = Settings(
-        named(study, out), jobs=jobs, json_output=json_output, page=page, dry_run=dry_run, yes=yes, show=show
-    )
-    return conduct(study, settings)
+    return conduct(study, Settings(named(study, out), show=show, **more))
 
 
 def listed(texts: list[str] | None) -> tuple[str, ...]:
@@ -108,4 +102,4 @@ def show(record: "Record", page: Path | None) -> None:
 
 def add(app: typer.Typer) -> None:
     """Add the command."""
-    app.command("graded")(graded)
+    app.command("graded")(common(graded))

@@ -1,12 +1,13 @@
 """`verify methods`: every method on the solutions that tell them apart, ending in error against cost."""
 
-from typing import Annotated
+from pathlib import Path
+from typing import Annotated, Any
 
 import typer
 
 from mpm_verify.solver.plugins import METHODS
 from mpm_verify.verify.choices import choices, completion, integers
-from mpm_verify.verify.options import DryRun, Jobs, Json, Junit, Out, Page, Summary, Yes, split
+from mpm_verify.verify.options import common, split
 
 
 def methods(
@@ -18,14 +19,9 @@ def methods(
     ] = None,
     ppc: Annotated[str, typer.Option(help="Particles per cell, square numbers.")] = "4",
     quick: Annotated[bool, typer.Option("--quick", help="The bar alone, on up to 64 cells.")] = False,
-    jobs: Jobs = None,
-    out: Out = None,
-    json_output: Json = False,
-    junit: Junit = None,
-    summary: Summary = None,
-    page: Page = None,
-    dry_run: DryRun = False,
-    yes: Yes = False,
+    *,
+    out: Path | None,
+    **more: Any,
 ) -> int:
     """All methods on seven solutions: orders, verdicts, and the error that each reaches at which cost."""
     from mpm_verify.verify.run import Settings, command, conduct, named, usage
@@ -39,13 +35,9 @@ def methods(
         name += f"-ppc-{ppc.replace(',', '-')}" if ppc != "4" else ""
         levels = QUICK if quick else LEVELS
         study = build_methods(asked or every_method(), levels, integers(ppc, "--ppc"), command(), name)
-    settings = Settings(
-        named(study, out), jobs=jobs, json_output=json_output, junit=junit, summary=summary, page=page,
-        dry_run=dry_run, yes=yes, show=show_overview,
-    )  # fmt: skip
-    return conduct(study, settings)
+    return conduct(study, Settings(named(study, out), quick=quick, show=show_overview, **more))
 
 
 def add(app: typer.Typer) -> None:
     """Add the command."""
-    app.command("methods")(methods)
+    app.command("methods")(common(methods))
