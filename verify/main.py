@@ -108,6 +108,11 @@ def main() -> None:
         from importlib.metadata import version
 
         sys.exit(told(f"verify {version('mpm-verify')}\n", 0))
+    if not asked[0].startswith("-") and not asked[0].endswith(".py") and asked[0] not in files():
+        from mpm_verify.solver.plugins import meant
+
+        names = ", ".join(files())
+        sys.exit(complain(f"no command {asked[0]!r}{meant(asked[0], files())}; choose from {names}"))
     sys.exit(called(asked[0]))
 
 
@@ -125,8 +130,7 @@ def called(asked: str) -> int:
         if code == STOPPED:
             raise KeyboardInterrupt
     except typer.TyperException as error:
-        message = error.format_message() if hasattr(error, "format_message") else str(error)
-        code = complain(message, USAGE if getattr(error, "exit_code", 1) == 1 else error.exit_code)
+        code = complain(message_of(error), USAGE if getattr(error, "exit_code", 1) == 1 else error.exit_code)
     except (typer.Abort, KeyboardInterrupt):
         code = complain("stopped; what was finished is stored, and the same command goes on from there", STOPPED)
     except SystemExit as end:  # of the completion; and 1, which would read as a verdict, where nobody reads a help text
@@ -140,6 +144,13 @@ def called(asked: str) -> int:
             "this is a defect of verify, not of what it verifies; please report it with the lines above", DEFECT
         )
     return code if isinstance(code, int) else 0
+
+
+def message_of(error: Exception) -> str:
+    """Line of an error of Typer's; of an option that is not there, with those that are near to it."""
+    if near := getattr(error, "possibilities", None):
+        return f"no option {getattr(error, 'option_name', '')} (did you mean {' or '.join(near)}?)"
+    return error.format_message() if hasattr(error, "format_message") else str(error)
 
 
 def told(text: str, code: int) -> int:
@@ -158,14 +169,6 @@ def told(text: str, code: int) -> int:
 
 def complain(message: str, code: int = USAGE) -> int:
     """Print one line on standard error, if anybody reads it; gives the exit code back."""
-    if message.startswith("No such command"):
-        from mpm_verify.solver.plugins import meant
-
-        word = message.split("'")[1]
-        message = f"no command {word!r}{meant(word, files())}; choose from {', '.join(files())}"
-    before, possible, names = message.partition("(Possible options: ")
-    if possible:
-        message = f"{before}(did you mean {names.removesuffix(')')}?)"
     if sys.stderr is None:  # print() would take standard output instead
         return code
     with contextlib.suppress(OSError, ValueError, AttributeError):
