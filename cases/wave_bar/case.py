@@ -5,10 +5,10 @@ velocity V sin(pi X / L). Then u = V / omega sin(pi X / L) sin(omega t) with ome
 the material, as long as V / c is small. The frequency is measured between the first and the last zero of the amplitude
 of the mode, sum m u sin(pi X / L), over `periods`.
 
-Lumped mass and central differences make it too low by (pi h / L)^2 (1 - C^2) / 24 at the Courant
-number C (Belytschko & Mullen 1978, doi:10.1002/nme.1620120103, for finite elements). Particles add to it: a velocity
-that goes to the grid and back is multiplied twice by 1 - (pi h / L)^2 m / 2, where m is the mean of N s^2 over the
-particles at s cells from a node. With hats and particles at the quarter points, m = 3/16.
+Lumped mass and central differences make it too low by (pi h / L)^2 (1 - C^2) / 24 at the Courant number C, as the
+dispersion of linear finite elements (Mullen & Belytschko 1982, doi:10.1002/nme.1620180103). Particles add to it: a
+velocity that goes to the grid and back is multiplied twice by 1 - (pi h / L)^2 m / 2, where m is the mean of N s^2 over
+the particles at s cells from a node. With hats and particles at the quarter points, m = 3/16.
 The contract of a case is told in cases/harness/contract.py.
 """
 
