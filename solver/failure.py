@@ -5,7 +5,7 @@ from enum import StrEnum
 
 
 class FailureKind(StrEnum):
-    """What ended a run, or why there is no error of it; `numbers` of the Failure in brackets."""
+    """What ended a run, or why there is no error of it; in brackets `numbers` of the Failure, and its `names`."""
 
     INVERTED = "inverted"  # det F is not above zero
     DOMAIN_INVERTED = "domain_inverted"  # a domain with corners of its own is turned inside out
@@ -18,7 +18,11 @@ class FailureKind(StrEnum):
     UNSTABLE_STEP = "unstable_step"  # a wave crosses more than a cell in a step [dt, limit]
     EMPTY_CELL = "empty_cell"  # no particle in a cell that the body fills
     TIME_LIMIT = "time_limit"  # a solver of somebody else took longer than it may [seconds]
-    SOLVER_ERROR = "solver_error"  # a solver of somebody else ended with an error
+    SOLVER_ERROR = "solver_error"  # a solver of somebody else ended with an error [code]
+    NO_ANSWER = "no_answer"  # a file that somebody else's solver was to write is not there <file>
+    UNREADABLE = "unreadable"  # such a file cannot be read <file>
+    NO_COLUMN = "no_column"  # such a file lacks what every answer has <file, column>
+    PARTICLES = "particles"  # such a file has other particles than were given [found, expected] <file>
     NOT_RUN = "not_run"  # nobody has run it yet
     NO_ERROR = "no_error"  # it came to its end, and no error was measured
 
@@ -37,8 +41,8 @@ class Failure:
         Index in the initial layout, -1 if none.
     cell
         Column and row of the particle's cell, None where there is none.
-    numbers
-        What FailureKind names in brackets.
+    numbers, names
+        What FailureKind tells in brackets.
     """
 
     kind: FailureKind
@@ -46,6 +50,7 @@ class Failure:
     particle: int = -1
     cell: tuple[int, int] | None = None
     numbers: dict[str, float] = field(default_factory=dict, hash=False)
+    names: dict[str, str] = field(default_factory=dict, hash=False)
 
 
 class RunFailed(Exception):  # noqa: N818 - a failed run is a result, not an error
@@ -58,6 +63,7 @@ class RunFailed(Exception):  # noqa: N818 - a failed run is a result, not an err
         particle: int = -1,
         cell: tuple[int, int] | None = None,
         numbers: dict[str, float] | None = None,
+        names: dict[str, str] | None = None,
     ) -> None:
         super().__init__(f"{kind} at step {step}, particle {particle}, cell {cell}")
-        self.failure = Failure(kind, step, particle, cell, numbers or {})
+        self.failure = Failure(kind, step, particle, cell, numbers or {}, names or {})

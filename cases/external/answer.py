@@ -1,0 +1,218 @@
+"""Answer of somebody else's solver: files of frames, matched to the particles of the case.
+
+result_<step>.csv (or .tsv, .npz, .vtu) has a row a particle, in any order: `id`, or the reference position `X`, `Y`;
+`x`, `y`; and any of `vx vy`, `Fxx Fxy Fyx Fyy`, `sxx syy szz sxy`. result.json says which time level a field has.
+"""
+
+import json
+import re
+from dataclasses import dataclass, field
+from decimal import Decimal, InvalidOperation
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mpm_verify.solver.failure import FailureKind, RunFailed
+from mpm_verify.solver.state import Floats
+
+QUANTITIES = {
+    "x": ("x", "y"),
+    "v": ("vx", "vy"),
+    "F": ("Fxx", "Fxy", "Fyx", "Fyy"),
+    "sigma": ("sxx", "syy", "szz", "sxy"),
+}
+ENDINGS = ("csv", "tsv", "txt", "npz", "vtu")
+NEAR = 1e-3  # spacings: how far a reference position may be from that of its particle
+LEVELS = {"v_lag": 0.5, "F_lag": 0.0}  # steps that v and F with sigma are behind x, where result.json does not say
+SAMPLE = 200  # numbers that the digits of a file are told from
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Frame: x (P,2) and what else there is of v (P,2), F (P,4) and sigma (P,4), in the order of the case.
+
+    `resolution` is the rounding of the numbers in the file by quantity, standard deviation in their units.
+    """
+
+    fields: dict[str, Floats]
+    resolution: dict[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Levels:
+    """Time levels of an answer: steps that v, and F with sigma, are behind x; and what it calls its version."""
+
+    v_lag: float = LEVELS["v_lag"]
+    F_lag: float = LEVELS["F_lag"]
+    version: str = ""
+
+
+def levels(out: Path) -> Levels:
+    """Time levels that result.json tells; the usual ones where there is no such file. Raises RunFailed."""
+    path = out / "result.json"
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"))
+        told = {key: float(data[key]) for key in LEVELS if key in data}
+        if not all(abs(lag) <= 2 for lag in told.values()):
+            raise ValueError
+        return Levels(**told, version=str(data.get("version", ""))[:80])
+    except FileNotFoundError:
+        return Levels()
+    except (OSError, ValueError, TypeError, AttributeError, RecursionError):
+        raise RunFailed(FailureKind.UNREADABLE, -1, names={"file": path.name}) from None
+
+
+def read(out: Path, step: int, X: Floats, spacing: float) -> Frame:
+    """Read the frame of a step.
+
+    Parameters
+    ----------
+    out
+        Folder of the answer.
+    step
+        Number of the step.
+    X
+        Reference positions (P,2) of the case.
+    spacing
+        Distance of particles, a length.
+
+    Returns
+    -------
+    Frame
+        Fields in the order of X.
+
+    Raises
+    ------
+    RunFailed
+        NO_ANSWER, UNREADABLE, NO_COLUMN, PARTICLES or NOT_FINITE, with the file, and the column or the numbers.
+    """
+    path = next((path for path in (out / f"result_{step}.{ending}" for ending in ENDINGS) if path.exists()), None)
+    if path is None:
+        raise RunFailed(FailureKind.NO_ANSWER, step, names={"file": f"result_{step}.csv"})
+    columns, resolution = table(path, step)
+    for name in QUANTITIES["x"]:
+        if name not in columns:
+            raise RunFailed(FailureKind.NO_COLUMN, step, names={"file": path.name, "column": name})
+    order = matched(columns, X, spacing, path.name, step)
+    found, digits = {}, {}
+    for quantity, names in QUANTITIES.items():
+        if not all(name in columns for name in names):
+            continue
+        values = np.stack([columns[name] for name in names], axis=-1)[order]
+        if not np.isfinite(values).all():
+            particle = int(np.argwhere(~np.isfinite(values).all(axis=1))[0, 0])
+            raise RunFailed(FailureKind.NOT_FINITE, step, particle, names={"file": path.name})
+        found[quantity] = values
+        digits[quantity] = float(np.sqrt(sum(resolution.get(name, 0.0) ** 2 for name in names)))
+    return Frame(found, digits)
+
+
+def table(path: Path, step: int) -> tuple[dict[str, Floats], dict[str, float]]:
+    """Columns of a file by name, and the rounding of each. Raises RunFailed."""
+    try:
+        columns = {".npz": arrays, ".vtu": mesh}.get(path.suffix, text)(path)
+    except RunFailed:
+        raise
+    except Exception:  # of three libraries, for anything that is not such a file
+        raise RunFailed(FailureKind.UNREADABLE, step, names={"file": path.name}) from None
+    if len({len(values) for values in columns.values()}) > 1 or not columns:
+        raise RunFailed(FailureKind.UNREADABLE, step, names={"file": path.name})
+    kept = {name: np.asarray(values, dtype=np.float64) for name, values in columns.items()}
+    return kept, {name: rounding(values) for name, values in columns.items()}
+
+
+def text(path: Path) -> dict[str, Any]:
+    """Columns of a CSV or TSV file, as they are written."""
+    import pandas as pd
+
+    head = next((line for line in path.read_text(encoding="utf-8-sig").splitlines() if line.strip()), "")
+    mark = next((mark for mark in ";\t," if mark in head), r"\s+")
+    frame = pd.read_csv(path, sep=mark, dtype=str, encoding="utf-8-sig", skipinitialspace=True, index_col=False)
+    return {str(name).strip().lstrip("# "): frame[name].fillna("nan").to_numpy(dtype=str) for name in frame.columns}
+
+
+def arrays(path: Path) -> dict[str, Any]:
+    """Columns of a .npz file: one array a column, or arrays X, x, v, F, sigma of several."""
+    with np.load(path, allow_pickle=False) as stored:
+        return spread({name: stored[name] for name in stored.files})
+
+
+def mesh(path: Path) -> dict[str, Any]:
+    """Columns of a .vtu file: its points are x, its point data the rest."""
+    import meshio
+
+    read_ = meshio.read(path)
+    data = {name: np.asarray(values) for name, values in read_.point_data.items()}
+    return spread({"x": np.asarray(read_.points)[:, :2], **data})
+
+
+def spread(stored: dict[str, Any]) -> dict[str, Any]:
+    """Columns of arrays by name; X, x, v, F and sigma may hold all their components."""
+    names = {**QUANTITIES, "X": ("X", "Y")}
+    found: dict[str, Any] = {}
+    for name, values in stored.items():
+        parts = names.get(name)
+        if parts is None or values.ndim == 1:
+            found[name] = values
+            continue
+        flat = values.reshape(len(values), -1)
+        if name == "F" and flat.shape[1] == 9:
+            flat = flat[:, (0, 1, 3, 4)]
+        elif name == "sigma" and flat.shape[1] == 9:
+            flat = flat[:, (0, 4, 8, 1)]
+        elif flat.shape[1] == 3 and len(parts) == 2:
+            flat = flat[:, :2]
+        if flat.shape[1] != len(parts):
+            raise ValueError(name)
+        found |= {part: flat[:, k] for k, part in enumerate(parts)}
+    return found
+
+
+def matched(columns: dict[str, Floats], X: Floats, spacing: float, file: str, step: int) -> Any:
+    """Row of each particle of the case, (P,). Raises RunFailed where rows are missing, too many or others."""
+    rows = len(columns["x"])
+    if rows != len(X):
+        raise RunFailed(FailureKind.PARTICLES, step, numbers={"found": rows, "expected": len(X)}, names={"file": file})
+    if "id" in columns:
+        given = columns["id"]
+        order = np.argsort(given, kind="stable")
+        if not np.array_equal(given[order], np.arange(len(X))):
+            same = len(np.unique(given[np.isin(given, np.arange(len(X)))]))
+            raise RunFailed(
+                FailureKind.PARTICLES, step, numbers={"found": same, "expected": len(X)}, names={"file": file}
+            )
+        return order
+    if not {"X", "Y"} <= columns.keys():
+        raise RunFailed(FailureKind.NO_COLUMN, step, names={"file": file, "column": "id"})
+    from scipy.spatial import cKDTree
+
+    given = np.stack([columns["X"], columns["Y"]], axis=-1)
+    if not np.isfinite(given).all():
+        raise RunFailed(FailureKind.NOT_FINITE, step, names={"file": file})
+    distance, order = cKDTree(given).query(X)
+    near = distance < NEAR * spacing
+    same = len(np.unique(order[near]))
+    if same != len(X):
+        raise RunFailed(FailureKind.PARTICLES, step, numbers={"found": same, "expected": len(X)}, names={"file": file})
+    return order
+
+
+def rounding(values: Any) -> float:
+    """Standard deviation of the rounding of a column, from its digits or its type; 0 where it has none."""
+    if values.dtype.kind in "iu":
+        return 0.0
+    if values.dtype.kind == "f":
+        size = float(np.sqrt(np.mean(np.square(values, dtype=np.float64)))) if len(values) else 0.0
+        return float(np.finfo(values.dtype).eps * size / np.sqrt(12.0))
+    some = values[:: max(1, len(values) // SAMPLE)]
+    try:
+        told = [Decimal(word.strip().replace("d", "e").replace("D", "e")) for word in some if re.search(r"\d", word)]
+    except InvalidOperation:
+        raise ValueError("not a number") from None
+    told = [one for one in told if one.is_finite() and one != 0]
+    digits = max((len(one.as_tuple().digits) for one in told), default=17)
+    fixed = not any(re.search(r"[eEdD]", word) for word in some)
+    decimals = max((-int(one.as_tuple().exponent) for one in told), default=17) if fixed else 400
+    ulps = [max(10.0 ** (one.adjusted() - digits + 1), 10.0**-decimals) for one in told]
+    return float(np.sqrt(np.mean(np.square(ulps)) / 12)) if ulps else 0.0
