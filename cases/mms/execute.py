@@ -17,7 +17,7 @@ from mpm_verify.cases.mms.gaps import LOOKS, Gaps
 from mpm_verify.cases.mms.norms import Norms, compare, new_sums
 from mpm_verify.cases.mms.packing import Packing
 from mpm_verify.cases.mms.run import QUANTITIES, Result, Run
-from mpm_verify.cases.mms.time_step import time_steps, width
+from mpm_verify.mms.discretisation import grid_box, time_steps, width
 from mpm_verify.mms.manufacture import Manufactured
 from mpm_verify.mms.square import Square
 from mpm_verify.solver.boundary import box, moving
@@ -68,9 +68,9 @@ def setup(run: Run) -> tuple[Model, Comparison, int]:
     solution: Any = create(SOLUTIONS, run.solution)
     material: Any = create(MATERIALS, run.material)
     dx = width(solution) / run.cells
-    below, above = dx * np.ceil(np.broadcast_to(solution.margin, (2, 2)) / dx)
+    lower, upper = grid_box(solution, dx)
     shift = -dx * np.array(run.offset) if moves_grid(solution) else np.zeros(2)
-    grid = Grid(dx, solution.lower - below + shift, solution.upper + above + shift)
+    grid = Grid(dx, lower + shift, upper + shift)
     steps, dt = time_steps(solution, grid.dx, run.courant)
     lag = 0.5 * dt if run.staggered else 0.0
 
