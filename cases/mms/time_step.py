@@ -10,6 +10,7 @@ import numpy as np
 
 from mpm_verify.cases.mms.exact import manufactured
 from mpm_verify.cases.mms.run import Run
+from mpm_verify.mms.discretisation import time_steps, width
 from mpm_verify.mms.manufacture import Manufactured
 from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS, create, is_file, label, parameters_of, split
 
@@ -88,14 +89,3 @@ def rounded(value: float, way: Any) -> float:
     """Value rounded to three digits, down or up."""
     unit = 10.0 ** (floor(log10(value)) - 2)
     return float(f"{way(value / unit) * unit:.3g}")
-
-
-def time_steps(solution: Any, dx: float, courant: float) -> tuple[int, float]:
-    """Number of steps of length courant dx / C at most that fill the duration, and their length."""
-    steps = ceil(solution.duration / (courant * dx / solution.C) * (1 - 1e-12))
-    return steps, solution.duration / steps
-
-
-def width(solution: Any) -> float:
-    """Extent along x, the one that cells are counted along."""
-    return float(solution.upper[0] - solution.lower[0])
