@@ -22,12 +22,18 @@ MEANING = {
     "INCONCLUSIVE": "the evidence does not decide; the reason names the run that would",
     "ERROR": "there is nothing to judge",
 }
+BOUNDS = {"at_least": "at least", "at_most": "at most"}  # ways of a check that are bounds
 DASH, MINUS, TIMES = "\N{EN DASH}", "\N{MINUS SIGN}", "\N{MULTIPLICATION SIGN}"
 
 
 def method(name: str) -> str:
     """Name of a method as people write it; the command's word where nothing else is known."""
     return METHODS.get(name, label(name).replace("_", " "))
+
+
+def way(name: str) -> str:
+    """Way in which a check holds a number against another."""
+    return BOUNDS.get(name, name)
 
 
 def quantity(name: str) -> str:

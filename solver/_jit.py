@@ -87,7 +87,7 @@ class Locator(_CacheLocator):
         return str(self.folder.name)
 
     def get_disambiguator(self) -> str:
-        """What tells functions of one name in one file apart: their numbers and names, not their line."""
+        """Hash that tells functions of one name in one file apart: their numbers and names, not their line."""
         code = self.function.__code__
         numbers = [c for c in code.co_consts if not isinstance(c, str | CodeType | None)]
         return hashlib.sha256(repr((numbers, code.co_names, code.co_varnames)).encode()).hexdigest()[:8]
@@ -125,7 +125,11 @@ def kernel(signature: Any = None, *, parallel: bool = False, inline: bool = Fals
         folder = folder_of(function)
         function.folder = folder  # type: ignore[attr-defined]
         kept = folder is not None
-        compiled = numba.njit(signature, parallel=parallel, error_model="numpy", cache=kept)(function)
+        options: Any = {"parallel": parallel, "error_model": "numpy"}
+        try:
+            compiled = numba.njit(signature, cache=kept, **options)(function)
+        except OSError:  # a full disk: it is compiled each time
+            compiled = numba.njit(signature, cache=False, **options)(function)
         # A kernel passed as a value is looked up by its signature each time, 25 us, and then twice in its library by
         # its name, 20 us each: more than half of a step of a small run.
         (result,) = compiled.overloads.values()

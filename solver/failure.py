@@ -1,11 +1,11 @@
-"""Why a run cannot go on: a kind with numbers. The words for it are in reports/sentences/failures.py."""
+"""Failure of a run: a kind with numbers. The words for it are in reports/sentences/failures.py."""
 
 from dataclasses import dataclass, field
 from enum import StrEnum
 
 
 class FailureKind(StrEnum):
-    """What ended a run, or why there is no error of it; `numbers` of the Failure in brackets."""
+    """Kinds of what ended a run, or why there is no error of it; `numbers` of the Failure in brackets."""
 
     INVERTED = "inverted"  # det F is not above zero
     DOMAIN_INVERTED = "domain_inverted"  # a domain with corners of its own is turned inside out
@@ -25,7 +25,7 @@ class FailureKind(StrEnum):
 
 @dataclass(frozen=True)
 class Failure:
-    """Why a run could not go on: a result, not a crash.
+    """Reason why a run could not go on: a result, not a crash.
 
     Parameters
     ----------

@@ -37,7 +37,7 @@ FINDINGS = (
     Remark("element.order", {"order": 1.5}, "words"),
 )
 GOOD = Check("turn", "stress", 1.001, 1.0, "relative", "closed form", 0.01)
-BAD = Check("turn", "shear stress", 0.2, 0.1, "at most", "symmetry")
+BAD = Check("turn", "shear stress", 0.2, 0.1, "at_most", "symmetry")
 LOST = Check("shear", "order", nan, 2.0, "absolute", "leading term", 0.1)
 INVERTED = Failure(FailureKind.INVERTED, 3)
 
@@ -64,12 +64,12 @@ def examination(*checks: Check, name: str = "objectivity") -> Examination:
         ("relative", 194.0, 200.0, 0.02, "FAIL", 0.03),
         ("relative", -205.0, -200.0, 0.03, "PASS", 0.025),
         ("relative", 200.0, -200.0, 0.03, "FAIL", 2.0),
-        ("at least", 0.2, 0.1, 0.0, "PASS", 0.1),
-        ("at least", 0.1, 0.1, 0.0, "PASS", 0.0),
-        ("at least", 0.05, 0.1, 0.0, "FAIL", 0.05),
-        ("at most", 0.05, 0.1, 0.0, "PASS", 0.05),
-        ("at most", 0.1, 0.1, 0.0, "PASS", 0.0),
-        ("at most", 0.2, 0.1, 0.0, "FAIL", 0.1),
+        ("at_least", 0.2, 0.1, 0.0, "PASS", 0.1),
+        ("at_least", 0.1, 0.1, 0.0, "PASS", 0.0),
+        ("at_least", 0.05, 0.1, 0.0, "FAIL", 0.05),
+        ("at_most", 0.05, 0.1, 0.0, "PASS", 0.05),
+        ("at_most", 0.1, 0.1, 0.0, "PASS", 0.0),
+        ("at_most", 0.2, 0.1, 0.0, "FAIL", 0.1),
     ],
 )
 def test_ways(way: Any, found: float, expected: float, within: float, outcome: str, miss: float) -> None:
@@ -78,7 +78,7 @@ def test_ways(way: Any, found: float, expected: float, within: float, outcome: s
     assert check.miss == pytest.approx(miss, abs=1e-12)
 
 
-@pytest.mark.parametrize("way", ["relative", "absolute", "at least", "at most"])
+@pytest.mark.parametrize("way", ["relative", "absolute", "at_least", "at_most"])
 @pytest.mark.parametrize("found", [nan, inf, -inf])
 def test_no_number_is_an_error(way: Any, found: float) -> None:
     assert Check("g", "n", found, 0.1, way, "s", 1.0).outcome is Outcome.ERROR
@@ -274,7 +274,7 @@ def test_words_of_a_check() -> None:
 
 def test_rows_of_the_page() -> None:
     """Found beside expected with eight digits, what is allowed, and the miss where there is a distance from it."""
-    rows = checks_table("turn", [GOOD, replace(GOOD, way="absolute"), BAD, replace(BAD, way="at least")]).rows
+    rows = checks_table("turn", [GOOD, replace(GOOD, way="absolute"), BAD, replace(BAD, way="at_least")]).rows
     assert [row[2:6] for row in rows] == [
         ("1.001", "1", "± 0.01 of it", "0.001"),
         ("1.001", "1", "± 0.01", "0.001"),
@@ -287,15 +287,15 @@ def test_rows_of_the_page() -> None:
 def test_the_closest_call() -> None:
     """The check that uses most of what it is allowed, bounds included; none where none is allowed anything."""
     far = replace(GOOD, name="far", found=1.009)
-    bound = Check("turn", "bound", 0.095, 0.1, "at most", "s")
-    least = Check("turn", "least", 1.0, 0.1, "at least", "s")
+    bound = Check("turn", "bound", 0.095, 0.1, "at_most", "s")
+    least = Check("turn", "least", 1.0, 0.1, "at_least", "s")
     assert closest([GOOD, far, least]).endswith("far")
     assert closest([GOOD, far, bound]) == "0.095, at most 0.1: bound"
     assert closest([least]) == "1, at least 0.1: least"
     assert closest([GOOD]) == "0.001 of 0.01: stress"
     assert closest([LOST, GOOD]) == "0.001 of 0.01: stress"
     assert closest([LOST]) == ""
-    assert closest([Check("turn", "none", 0.0, 0.0, "at most", "s")]) == ""
+    assert closest([Check("turn", "none", 0.0, 0.0, "at_most", "s")]) == ""
 
 
 def test_the_document_has_what_came_out(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -15,7 +15,7 @@ from mpm_verify.cases.harness.runner import Ticker
 from mpm_verify.cases.mms.deviations import SHOWN
 from mpm_verify.cases.mms.execute import execute
 from mpm_verify.cases.mms.expectations import expected, promised
-from mpm_verify.cases.mms.time_step import rounded, speed_parameter
+from mpm_verify.cases.mms.stability import rounded, speed_parameter
 from mpm_verify.mms.cells import check_cells, fits, fitting, ratio
 from mpm_verify.solver.plugins import SOLUTIONS, create, label
 from mpm_verify.verify.main import main

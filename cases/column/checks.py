@@ -44,8 +44,8 @@ def checks(study: ColumnStudy, ran: Sequence[FinishedRun]) -> list[Check]:
     ]  # fmt: skip
     rested = sum(one.values["rest"] < inf for one in ran)
     found = [Check("Runs", f"runs at rest out of {len(study.runs)}", float(rested), float(study.finish),
-                   "at least", "declared by the study")]  # fmt: skip
-    way: Way = "at most"
+                   "at_least", "declared by the study")]  # fmt: skip
+    way: Way = "at_most"
     for name, runs, numbers, bound, source in asked:
         if runs:
             worst = max(range(len(runs)), key=lambda k: numbers[k])

@@ -1,0 +1,91 @@
+"""Time steps of a study against the stability limit of the solver, before anything runs."""
+
+import shlex
+from collections.abc import Sequence
+from dataclasses import replace
+from math import ceil, floor, log10
+from typing import Any
+
+import numpy as np
+
+from mpm_verify.cases.mms.exact import manufactured
+from mpm_verify.cases.mms.run import Run
+from mpm_verify.cases.mms.time_step import time_steps, width
+from mpm_verify.mms.manufacture import Manufactured
+from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS, create, is_file, label, parameters_of, split
+
+CELLS, TIMES = 32, 9  # where and when the velocity at the start is looked at
+SLACK = 1e-3  # of that velocity: particles lie elsewhere
+MOST_STEPS = 10_000_000
+LEAST_COURANT = 1e-3
+
+
+def check_time_steps(runs: Sequence[Run], courants: Sequence[float]) -> None:
+    """Raise ValueError, with what to type, where a run takes a step above the stable one: dt > dx / (c + |v|).
+
+    The runs are of one solution in one material; `courants` are those that were asked for, the largest last. What
+    passes here also runs: |v| is the largest over the body in the half step before the start.
+    """
+    specification, model = runs[0].solution, runs[0].material
+    solution, material = create(SOLUTIONS, specification), create(MATERIALS, model)
+    steps = {(run.cells, run.courant): time_steps(solution, width(solution) / run.cells, run.courant) for run in runs}
+    longest = max(count for count, _ in steps.values())
+    if longest > MOST_STEPS:
+        raise ValueError(
+            f"{label(specification)}: a run would take {longest:.2g} time steps to fill the duration of "
+            f"{solution.duration:g}; take a shorter duration or a lower reference speed"
+        )
+    lag = 0.5 * max(dt for _, dt in steps.values())
+    c, v = float(material.wave_speed()), fastest(solution, manufactured(specification, model), lag)
+    if any(dt * (c + v) > width(solution) / cells for (cells, _), (_, dt) in steps.items()):
+        raise ValueError(refusal(specification, solution, c, v, courants))
+
+
+def fastest(solution: Any, exact: Manufactured, lag: float) -> float:
+    """Largest speed of the body over the times from -lag to 0, sampled, with some slack."""
+    corners = solution.layout(width(solution) / CELLS, 4).corners.reshape(-1, 2)
+    most = max(float(np.hypot(*exact.v(corners, time).T).max()) for time in np.linspace(-lag, 0.0, TIMES))
+    return most * (1 + SLACK)
+
+
+def refusal(specification: str, solution: Any, c: float, v: float, courants: Sequence[float]) -> str:
+    """Line with the largest Courant number at this speed and the least speed at this number, as they are typed."""
+    C, courant = float(solution.C), courants[-1]
+    largest = rounded(C / (c + v), floor)
+    ways = []
+    if largest >= LEAST_COURANT:
+        typed = [largest, *(other for other in reversed(courants[:-1]) if other < largest)]
+        ways.append(f"--courant {','.join(f'{one:g}' for one in typed)}")
+    name, least = speed_parameter(solution), courant * (c + v)
+    if name and courant * v < C:  # the body moves faster with it, at most in proportion
+        least = max(least, courant * c / (1 - courant * v / C))
+    faster = rounded(least, ceil)
+    if name:
+        file, given = split(specification)
+        others = [item for item in given.split(",") if item and not item.startswith(f"{name}=")]
+        ways.append(f"--solution {shlex.quote(f'{file}:' + ','.join([*others, f'{name}={faster:g}']))}")
+    elif is_file(specification):
+        ways.append(f'"speed": {faster:g} in domain()')
+    return (
+        f"{label(specification)}: with waves at {c:.4g}, the body at {v:.3g} and a reference speed of {C:g}, a "
+        f"Courant number of {courant:g} is above the stability limit of {largest:g}; the speed would have to be "
+        f"{faster:g} or more; take {', or '.join(ways)}; --force runs it all the same"
+    )
+
+
+def speed_parameter(solution: Any) -> str:
+    """Parameter that is the reference speed, as it is typed; empty where none is."""
+    for name, field in parameters_of(solution).items():
+        if getattr(solution, field.name) == solution.C:
+            try:
+                if replace(solution, **{field.name: 2 * solution.C}).C == 2 * solution.C:
+                    return name
+            except ValueError:
+                continue
+    return ""
+
+
+def rounded(value: float, way: Any) -> float:
+    """Value rounded to three digits, down or up."""
+    unit = 10.0 ** (floor(log10(value)) - 2)
+    return float(f"{way(value / unit) * unit:.3g}")
