@@ -4,6 +4,7 @@ import os
 import shlex
 from collections.abc import Sequence
 from dataclasses import fields
+from pathlib import Path
 from typing import Any
 
 from mpm_verify.cases.harness.study import QuantityPlan, Study, head
@@ -19,8 +20,11 @@ def reason(study: Study[Any], found: Finding) -> str:
     return verdicts.reason(found.verdict.reason, courants(study, found.plan))
 
 
-def command(study: Study[Any], found: Finding) -> str:
-    """Command of the study that would decide; empty where no run would, or none can be asked for."""
+def command(study: Study[Any], found: Finding, folder: Path | None = None) -> str:
+    """Command of the study that would decide; empty where no run would, or none can be asked for.
+
+    It goes on in the `folder` of the study where that is not the usual one.
+    """
     r = found.verdict.reason
     if r.wanted is None:
         return ""
@@ -29,7 +33,10 @@ def command(study: Study[Any], found: Finding) -> str:
     option = verdicts.options(r.wanted, courants(study, found.plan))
     if not option:
         return ""
-    return shlex.join(replaced(typed(study, found.plan, r.wanted), *option))
+    words = replaced(typed(study, found.plan, r.wanted), *option)
+    if folder is not None and folder.absolute() != Path("results", study.name).absolute():
+        words += ["--out", os.path.relpath(folder)]
+    return shlex.join(words)
 
 
 def courants(study: Study[Any], plan: QuantityPlan[Any]) -> tuple[float, ...]:

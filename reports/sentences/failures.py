@@ -44,12 +44,7 @@ def failure(failure: Failure) -> str:
     when = f" at step {failure.step}" if failure.step >= 0 else ""
     where = f", particle {failure.particle}" if failure.particle >= 0 else ""
     where += f" in cell {failure.cell}" if failure.cell else ""
-    return f"{cause(failure)}{advice(failure)}{when}{where}"
-
-
-def advice(failure: Failure) -> str:
-    """Advice on what to type to have such a run of `verify mms` all the same; empty where nothing helps."""
-    return " (--force runs it all the same)" if failure.kind is FailureKind.UNSTABLE_STEP else ""
+    return f"{cause(failure)}{when}{where}"
 
 
 def replicate(number: int) -> str:

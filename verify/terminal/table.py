@@ -104,7 +104,7 @@ def order(local: float | None) -> str:
 def verdict(out: Console, record: Record, finding: Finding) -> None:
     """Print the verdict in words, and the command that would decide on a line of its own, to be copied whole."""
     out.print(sentence(record, finding))
-    if command := commands.command(record.study, finding):
+    if command := commands.command(record.study, finding, record.store.folder):
         out.print(f"  this would decide: {command}", soft_wrap=True, markup=False)
 
 
