@@ -101,10 +101,11 @@ def read(path: Path, exact: bool = True) -> Table:
         One line that says what cannot be read, where, and what to write instead.
     """
     number = "error" if exact else "value"
-    needs = f"a header with cells or h, and {number}, and a row for each level below it"
+    columns = f"cells or h, and {number}"
+    needs = f"a header with {columns}, and a row for each level below it"
     text = sheet.decoded(path)
     as_json = path.suffix.lower() == ".json" or text.lstrip()[:1] in ("[", "{")
-    found = of_json(path, text, needs) if as_json else sheet.columns(path, text, needs)
+    found = of_json(path, text, columns) if as_json else sheet.columns(path, text, needs)
     taken = roles(found, number)
     if not LEAST <= len(found.rows) <= MOST:
         raise ValueError(f"{path} has {len(found.rows)} rows below its header, and must have 1 to {MOST}")

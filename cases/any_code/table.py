@@ -116,7 +116,8 @@ def twice(table: Table, earlier: Row, row: Row) -> str:
     of = " ".join(name for name in (row.method, row.quantity) if name)
     words = "give a column replicate for repeated runs, or method or quantity for what differs"
     there = f"replicate {row.replicate} of {size}" if row.replicate else size
-    return f"{table.path}, {table.word} {row.line}: {there} of {of} is there already, in {earlier.line}; {words}"
+    here, before = (f"{table.word} {one.line}" for one in (row, earlier))
+    return f"{table.path}, {here}: {there} of {of} is there already, in {before}; {words}"
 
 
 def runs_of(table: Table, key: Key, levels: Levels, expected: Expected) -> Iterable[Run]:

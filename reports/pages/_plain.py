@@ -44,8 +44,10 @@ def sections(record: Record, add: Add) -> list[Section]:
     found = []
     if record.study.plans:
         named = {(f.plan.quantity, f.plan.norm): words.measured(f.plan, ", ") for f in record.findings}
+        orders = any(plan.expectation and plan.expectation.order is not None for plan in record.study.plans)
+        line = "; the dashed line has the expected order" if orders else ""
         images = [(add(f"error_{q}_{n}", errors(record, q, n), f"Error of {q} against cell size."),
-                   f"Error of the {said} against cell size; the dashed line has the expected order.")
+                   f"Error of the {said} against cell size{line}.".replace("of the error ", ""))
                   for (q, n), said in named.items()]  # fmt: skip
         found.append(Section("verdicts", "Verdicts", record.study.words, images, [verdict_table(record)]))
         found.append(Section("errors", "Errors and orders", tables=[levels(record, f) for f in record.findings]))
@@ -102,12 +104,13 @@ def errors(record: Record, quantity: str, norm: str) -> Figure:
         axes = figure.subplots()
         for s in drawn:
             points = [(1 / run.cells, error) for run, error in record.errors(s, quantity, norm) if error > 0]
-            look = style.look(methods, getattr(s.first, "method", ""), getattr(s.first, "ppc", 4))
+            look = style.look(methods, getattr(s.first, "method", ""), getattr(s.first, "ppc", 9))
             axes.loglog(*zip(*points, strict=True), label=record.label(s.first), **look.plot) if points else None
         _expected(axes, record, quantity, norm)
         cell_axis(axes, drawn)
-        axes.set_ylabel(f"error of the {quantity}, {norm}" if norm != quantity else quantity)
-        axes.legend(frameon=False)
+        axes.set_ylabel("error" if quantity == norm else f"error of the {quantity}, {norm}".removesuffix(", error"))
+        if axes.lines:
+            axes.legend(frameon=False)
     return figure
 
 

@@ -41,9 +41,9 @@ def plain(name: str) -> str:
 
 def advice(wanted: Wanted, by: str, present: Sequence[float], exact: bool = True) -> str:
     """What to change in the table; `present` are the cell sizes of its levels."""
-    number = "error" if exact else "value"
+    number, an = ("error", "an") if exact else ("value", "a")
     if wanted.action is Action.FINISH:
-        return f"that row needs a {number} that is a number"
+        return f"that row needs {an} {number} that is finite"
     if wanted.action is Action.HALVE_ALL:
         return "run all levels with half the time step, and judge that table"
     if wanted.action is Action.HALVE_FINEST:
@@ -73,14 +73,14 @@ def added(wanted: Wanted, by: str, present: Sequence[float]) -> str:
 
 def size(h: float, by: str) -> str:
     """Cell size as the table has it: `64 cells`, `h = 0.0125`."""
-    return f"{1 / h:.0f} cells" if by == "cells" else f"h = {h:.4g}"
+    return f"{1 / h:.0f} cells" if by == "cells" else f"h = {h:.6g}"
 
 
 def sized(sizes: Sequence[float], by: str) -> str:
     """Several cell sizes: `24, 32 cells`."""
     if by == "cells":
         return ", ".join(f"{1 / h:.0f}" for h in sizes) + " cells"
-    return "h = " + ", ".join(f"{h:.4g}" for h in sizes)
+    return "h = " + ", ".join(f"{h:.6g}" for h in sizes)
 
 
 def stricter(found: Extrapolated) -> str:

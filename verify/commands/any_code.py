@@ -42,24 +42,23 @@ def judge(
     **more: Any,
 ) -> int:
     """Judge errors of any code, or values without an exact solution: observed order, verdict, HTML report."""
-    from mpm_verify.verify.run import Settings, conduct, named, usage
+    from mpm_verify.verify.run import Settings, command, conduct, named, usage
 
     with usage():
         from mpm_verify.cases.any_code.table import Expected
 
-        study = study_of(file, Expected(order, below, above, floor, not no_exact, steady))
+        study = study_of(file, Expected(order, below, above, floor, not no_exact, steady), command())
     return conduct(study, Settings(named(study, out), **more))
 
 
-def study_of(file: Path, expected: "Expected") -> "Study[Any]":
+def study_of(file: Path, expected: "Expected", command: str) -> "Study[Any]":
     """Study of a file, with a sentence on how it was read. Raises ValueError with one line."""
     from mpm_verify.cases.any_code import reading, table
     from mpm_verify.reports.sentences import any_code
-    from mpm_verify.verify.run import command
 
     read = reading.read(file, expected.exact)
     name = "judge-" + "".join(letter if letter.isalnum() or letter in "._" else "-" for letter in file.stem)[:100]
-    return table.study(read, expected, command(), name, any_code.told(read, expected))
+    return table.study(read, expected, command, name, any_code.told(read, expected))
 
 
 def add(app: typer.Typer) -> None:

@@ -39,7 +39,7 @@ def show(record: Record, page: Path | None, console: Console | None = None) -> N
     out.print(f"\n[bold]{study.title}[/bold]")
     shown = [f for f in found if f.plan.judged or f.plan.run.given or (f.plan.quantity, f.plan.norm) == ALWAYS]
     out.print(errors_table(record, shown))
-    if most := max((len(level.errors) for f in found for level in f.levels), default=1) - 1:
+    if (most := max((len(level.errors) for f in found for level in f.levels), default=1) - 1) > 0:
         given = any(f.plan.run.given for f in found)
         how = "" if given else ", each with other positions of the particles"
         out.print(f"errors are geometric means of up to {most + 1} runs{how}")
