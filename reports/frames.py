@@ -93,6 +93,11 @@ class Record:
         """Level of a cell size in that column: a whole number of cells, or the size without the round-off of 1/h."""
         return round(1 / h) if self.by == "cells" else float(f"{h:.14g}")
 
+    def named(self, h: float) -> str:
+        """Level of a cell size as text: `64`, `0.0125`."""
+        size = self.size(h)
+        return str(size) if isinstance(size, int) else f"{size:.6g}"
+
     def series_of(self, plan: QuantityPlan[Any]) -> Series:
         """Refinement that a planned quantity is measured on."""
         return next(s for s in self.series if s.head == plan.head)

@@ -290,6 +290,22 @@ def test_all_outputs_of_a_study(verify: Call, tmp_path: Path) -> None:
     assert (folder / "report.html").read_text() == page
 
 
+def test_a_table_has_no_field(verify: Call) -> None:
+    Path("errors.csv").write_text(power(2.0))
+    verify("judge", "errors.csv", "--no-page")
+    assert (
+        "the study has no such run; choose from none" in verify("report", "results/judge-errors", "--field", "16,4")[2]
+    )
+
+
+def test_a_million_cells_are_written_out(verify: Call) -> None:
+    Path("errors.csv").write_text("cells,error\n1048576,1\n2097152,0.25\n")
+    _, out, _ = verify("judge", "errors.csv", "--order", "2", "--page")
+    assert " 1048576  1.000e+00" in out
+    assert "add rows of 4194304, 8388608 cells" in out
+    assert "1048576" in Path("results/judge-errors/report.html").read_text()
+
+
 def test_a_stored_table_needs_its_file_no_more(verify: Call) -> None:
     Path("errors.csv").write_text(TABLE)
     verify("judge", "errors.csv", "--order", "2", "--steady", "--no-page")

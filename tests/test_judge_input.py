@@ -104,6 +104,8 @@ def test_cell_sizes(tmp_path: Path, text: str, h: float) -> None:
 def test_a_size_is_read_before_a_count(tmp_path: Path) -> None:
     """A count may be of all cells; the size needs no thought."""
     assert points("cells,h,error\n64,1/8,1", tmp_path) == [(8.0, 1.0)]
+    found = read(tmp_path / "errors.csv")
+    assert (found.by, found.taken, found.unused) == ("h", {"h": "h", "error": "error"}, ("cells",))
 
 
 @given(

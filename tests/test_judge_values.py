@@ -96,6 +96,7 @@ def test_the_worked_table_by_the_command(verify: Call) -> None:
     verdicts = {one["quantity"]: one["code"] for one in document["verdicts"]}
     assert set(verdicts.values()) == {"too_few_levels"}
     page = Path("results/judge-table/report.html").read_text()
+    assert all(f">{value}<" in page for _, values, *_ in WORKED.values() for value in map("{:.10g}".format, values))
     assert "Richardson extrapolation and grid convergence index" in page
     assert all(text in page for text in ("6.1685", "10.8801", "6.02687", "2.17 %", "the values go to and fro"))
 

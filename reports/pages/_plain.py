@@ -72,8 +72,8 @@ def verdict_table(record: Record) -> Table:
 def levels(record: Record, found: Finding) -> Table:
     """Table of the levels of a finding, a row for each cell size."""
     rows = [
-        (f"{row[record.by]:.6g}", words.sci(row["error"]), words.order(row["order"]), str(row["ended"]))
-        for row in plain.levels(record, found)
+        (record.named(level.h), words.sci(row["error"]), words.order(row["order"]), str(row["ended"]))
+        for level, row in zip(found.levels, plain.levels(record, found), strict=True)
     ]
     title = f"{record.label(found.plan.run)}: {words.measured(found.plan, ', ')}"
     return Table(title, (record.by, "error", "order", "failed"), tuple(rows), texts=("failed",))

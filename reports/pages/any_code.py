@@ -44,10 +44,14 @@ def rows(record: Record) -> Section:
     """Section of the rows of the table, in its order."""
     head = ("line", "method", "quantity", record.by, "replicate", "time step", "number", "failed")
     made = []
+    coarsest = [s.first for s in record.series if not s.first.exact]  # of values: no error can be estimated of it
+    for run in coarsest:
+        made.append((words.DASH, run.method, run.measured, record.named(run.coarser_h), "1", words.DASH,
+                     f"{run.coarser:.10g}", ""))  # fmt: skip
     for run in sorted(record.study.runs, key=lambda run: (run.line, -run.courant)):
         result = record.result(run)
         why = failures.failure(result.failure) if result and result.failure else ""
         half = "half" if run.courant == HALF else "none" if run.steady else "whole"
-        made.append((str(run.line), run.method, run.measured, f"{record.size(run.h):.6g}", f"{run.offset[0] + 1:.0f}",
+        made.append((str(run.line), run.method, run.measured, record.named(run.h), f"{run.offset[0] + 1:.0f}",
                      half, f"{run.number:.10g}", why))  # fmt: skip
     return Section("rows", "Rows", tables=[Table("Rows of the table", head, tuple(made), heads=0, texts=head[1:3])])

@@ -90,7 +90,7 @@ def rows(record: Record, finding: Finding) -> Iterator[tuple[str, ...]]:
     first: tuple[str, ...] = (*columns(record, plan).values(), words.measured(plan, " "))
     earlier = False
     for level, passed in zip_longest(finding.levels, finding.crossings):
-        cells, faces = f"{record.size(level.h):.6g}", "" if passed is None else f"{passed:.1f}"
+        cells, faces = record.named(level.h), "" if passed is None else f"{passed:.1f}"
         if level.ended:
             yield (*first, cells, "-", "", faces, verdicts.ended(level.ended))
         else:
