@@ -202,7 +202,7 @@ def test_half_the_time_step(tmp_path: Path, name: str) -> None:
     assert judged("\n".join([head, *rows]), tmp_path, order=2.0, **more)[0].verdict.reason.code is code
 
 
-@pytest.mark.parametrize("bad", ["nan", "inf", "NaN", "Infinity"])
+@pytest.mark.parametrize("bad", ["nan", "inf", "NaN", "Infinity", "-nan", "-nan(ind)"])
 @pytest.mark.parametrize("at", range(4))
 def test_an_error_that_is_not_finite_is_a_failed_level(tmp_path: Path, bad: str, at: int) -> None:
     lines = power(2.0).splitlines()

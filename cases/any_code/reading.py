@@ -7,7 +7,7 @@ import json
 import re
 from dataclasses import dataclass
 from itertools import product
-from math import inf, isfinite, nan
+from math import inf, isfinite
 from pathlib import Path
 from typing import Any
 
@@ -30,7 +30,7 @@ ROLES = {  # columns that are read: the name of each, and others that it may hav
 }
 UNIT = re.compile(r"\s*(\[.*\]|\(.*\)|<.*>)\s*$")
 FRACTION = re.compile(r"\s*(\d+)\s*/\s*(\d+)\s*")
-BARE = {"nan": nan, "inf": inf, "infinity": inf}
+BARE = {sign + word: float(sign + word) for sign in ("", "+", "-") for word in ("nan", "inf", "infinity")}
 LEAST, MOST = 1, 5000  # rows
 
 
@@ -247,10 +247,9 @@ def measured(cells: Cells, line: int, texts: list[str], role: str) -> float | No
     text = cells.text(role, texts)
     if not text:
         return None
-    word = text.lower().lstrip("+-")
-    found = BARE.get(word, sheet.number(text))
+    found = BARE.get(text.lower().removesuffix("(ind)"), sheet.number(text))  # nan(ind): a C library has it so
     if found is None:
         raise cells.complaint(line, role, texts, "must be a number, or nan for a run that failed")
-    if role.endswith("error") and text.startswith(("-", "\N{MINUS SIGN}")) and found != 0:
+    if role.endswith("error") and found < 0:
         raise cells.complaint(line, role, texts, "must not be negative: an error is a norm; write its absolute value")
     return found
