@@ -153,6 +153,7 @@ BAD: dict[str, tuple[str | bytes, str]] = {
     "an empty size": (lines(",1"), "line 2: cells is empty; must be a whole number"),
     "half a cell": (lines("8.5,1"), "line 2: cells = '8.5' must be a whole number from 1 on"),
     "no cell": (lines("0,1"), "cells = '0' must be a whole number"),
+    "cells beyond counting": (lines("1e400,1"), "cells = '1e400' must be a whole number"),
     "negative cells": (lines("-8,1"), "cells = '-8' must be a whole number"),
     "a thousand with a comma": ("cells;error\n1,000;1", "cells = '1,000' must be a whole number"),
     "cells that are not a number": (lines("nan,1"), "cells = 'nan' must be a whole number"),
@@ -166,6 +167,7 @@ BAD: dict[str, tuple[str | bytes, str]] = {
     "the same replicate": (
         lines("8,1,a", "8,1,a", head="cells,error,replicate"), "replicate a of cells = 8 of code error is there",
     ),
+    "sizes far apart": (lines("1,1", "1e-300,1", head="h,error"), "cell sizes of code error go from 1 to 1e-300"),
     "no method": (lines("8,1,fem", "16,1,", head="cells,error,method"), "line 3: method is empty; write the method"),
     "a negative half": (lines("8,1,-1", head="cells,error,half_dt_error"), "half_dt_error = '-1' must not be negative"),
     "too many rows": (lines(*(f"{n},1" for n in range(1, 5002))), "has 5001 rows below its header, and must have 1"),

@@ -118,6 +118,16 @@ def test_no_index_of_equal_or_zero_values(f: tuple[float, ...]) -> None:
     assert found.index != found.index
 
 
+@pytest.mark.parametrize("ratio", [1e-300, 1e-9, 1.0, 1e9, 1e300])
+@pytest.mark.parametrize("h", [(1.0, 1.0001, 1e9), (1.0, 1e8, 1e9), (1.0, 2.0, 2.0001)])
+@pytest.mark.parametrize("sign", [1, -1])
+def test_any_levels_have_an_order_or_none(h: tuple[float, ...], ratio: float, sign: int) -> None:
+    """Nothing overflows."""
+    f = (1.0, 2.0, 2.0 + sign * ratio)
+    assert celik(h, f).order >= 0 or celik(h, f).index != celik(h, f).index
+    assert extrapolate(h, f).kind in ("converges", "oscillates", "unsettled", "equal")
+
+
 # ---- the rule on estimates
 
 

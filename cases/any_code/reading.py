@@ -32,6 +32,7 @@ UNIT = re.compile(r"\s*(\[.*\]|\(.*\)|<.*>)\s*$")
 FRACTION = re.compile(r"\s*(\d+)\s*/\s*(\d+)\s*")
 BARE = {sign + word: float(sign + word) for sign in ("", "+", "-") for word in ("nan", "inf", "infinity")}
 LEAST, MOST = 1, 5000  # rows
+MANY = 1e15  # cells along a side: larger whole numbers have no next one
 
 
 @dataclass(frozen=True)
@@ -231,7 +232,7 @@ def level(cells: Cells, line: int, texts: list[str]) -> float:
     text = cells.text(role, texts)
     if role == "cells":
         found = sheet.number(text)
-        if found is None or "," in text or found != int(found) or found < 1:
+        if found is None or "," in text or not 1 <= found <= MANY or found != int(found):
             must = "must be a whole number from 1 on, such as 16; sizes go into a column h"
             raise cells.complaint(line, role, texts, must)
         return found

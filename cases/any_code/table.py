@@ -13,6 +13,7 @@ from mpm_verify.cases.judging.records import Expectation
 from mpm_verify.cases.judging.richardson import FORMAL
 
 HIGHEST = 20.0  # order that is expected
+WIDEST = 1e9  # ratio of cell sizes
 USUAL = Expectation(FORMAL)  # of the band
 
 
@@ -123,6 +124,9 @@ def twice(table: Table, earlier: Row, row: Row) -> str:
 def runs_of(table: Table, key: Key, levels: Levels, expected: Expected) -> Iterable[Run]:
     """Runs of one refinement, coarse to fine. Raises ValueError for values with replicates, or on one level."""
     sizes = sorted(levels)
+    if sizes[-1] > WIDEST * sizes[0]:
+        ends = f"{1 / sizes[0]:.3g} to {1 / sizes[-1]:.3g}"
+        raise ValueError(f"{table.path}: cell sizes of {' '.join(key)} go from {ends}, which is no refinement")
     if not expected.exact:
         check_values(table, key, levels)
     steps = differences([levels[cells][0].number for cells in sizes])

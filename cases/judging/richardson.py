@@ -25,7 +25,8 @@ Kind = Literal["converges", "oscillates", "unsettled", "equal"]
 SAFETY = 1.25  # of three levels whose order is observed
 LARGEST = 10.0  # order that is looked for
 FORMAL = 2.0  # order that is used: more is an accident, and would make the uncertainty too small
-ITERATIONS, STEEP = 1000, 200.0  # of the order of Celik et al.; a larger order is none
+ITERATIONS = 1000  # for the order of Celik et al.
+FLAT, STEEP = 1e-12, 600.0  # p ln r: below it r^p is 1, and above it no number
 LEAST = 0.5  # with a lower order the limit lies beyond 2.4 times the last difference: nothing has settled
 
 
@@ -158,7 +159,7 @@ def _apparent(r21: float, r32: float, ratio: float) -> float:
     """Order p = |ln |ratio| + q(p)| / ln r21, q = ln((r21^p - s)/(r32^p - s)), s the sign of the ratio, iterated."""
     s, p = (1 if ratio > 0 else -1), abs(log(abs(ratio))) / log(r21)
     for _ in range(ITERATIONS):
-        if not 0 < p < STEEP:
+        if not FLAT < p * log(max(r21, r32)) < STEEP:
             break
         last, p = p, abs(log(abs(ratio)) + log((r21**p - s) / (r32**p - s))) / log(r21)
         if abs(p - last) <= 1e-12 * last:
