@@ -42,8 +42,13 @@ def quantity(name: str) -> str:
 
 
 def series(of: Any) -> str:
-    """Method and particle count: `CPDI, 4 per cell`."""
-    return f"{method(of.method)}, {of.ppc} per cell"
+    """Method and particle count: `CPDI, 4 per cell`; the method alone where there are no particles."""
+    return f"{method(of.method)}, {of.ppc} per cell" if hasattr(of, "ppc") else method(of.method)
+
+
+def measured(plan: Any, between: str = " in ") -> str:
+    """Quantity and norm of a plan: `u in rms`; the quantity alone where nobody says the norm."""
+    return str(plan.quantity) if plan.run.given else f"{plan.quantity}{between}{plan.norm}"
 
 
 def sci(value: float | None) -> str:

@@ -20,6 +20,7 @@ class FailureKind(StrEnum):
     TIME_LIMIT = "time_limit"  # a solver of somebody else took longer than it may [seconds]
     SOLVER_ERROR = "solver_error"  # a solver of somebody else ended with an error
     NOT_RUN = "not_run"  # nobody has run it yet
+    OSCILLATES = "oscillates"  # no error can be estimated of a value that goes to and fro as cells get finer
     NO_ERROR = "no_error"  # it came to its end, and no error was measured
 
 

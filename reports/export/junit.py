@@ -48,7 +48,7 @@ def _verdict(suite: Any, record: Record, finding: Finding) -> None:
     names = [str(value) for key, value in record.columns(plan.run).items() if key != "ppc"]
     case = ElementTree.SubElement(
         suite, "testcase", classname=".".join([record.study.name, *names]),
-        name=f"{plan.quantity} {plan.norm}, {plan.run.ppc} per cell",
+        name=words.measured(plan, " ") + (f", {plan.run.ppc} per cell" if hasattr(plan.run, "ppc") else ""),
         time=f"{sum(result.wall_s for result in finding.results if result):.3f}",
     )  # fmt: skip
     said = commands.reason(record.study, finding)

@@ -16,6 +16,7 @@ CAUSES = {
     FailureKind.TIME_LIMIT: "the solver took longer than it may",
     FailureKind.SOLVER_ERROR: "the solver ended with an error",
     FailureKind.NOT_RUN: "not run yet",
+    FailureKind.OSCILLATES: "the values go to and fro",
     FailureKind.NO_ERROR: "no error",
 }
 WIDTHS = {1.0: "a cell", 2.0: "two cells"}

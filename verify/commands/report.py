@@ -43,7 +43,7 @@ def of(field: str, record: "Record") -> tuple[int, int]:
     if len(chosen) != 2 or min(chosen) < 1:
         raise ValueError(f"--field {field!r} cannot be read; write cells,particles per cell, such as 64,4")
     runs = record.study.runs
-    there = sorted({(run.cells, run.ppc) for run in runs if hasattr(run, "cells")})
+    there = sorted({(run.cells, run.ppc) for run in runs if hasattr(run, "cells") and hasattr(run, "ppc")})
     if chosen not in there:
         known = "; ".join(f"{cells},{ppc}" for cells, ppc in there)
         raise ValueError(f"--field {field}: the study has no such run; choose from {known or 'none'}")
