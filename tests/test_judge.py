@@ -293,9 +293,7 @@ def test_all_outputs_of_a_study(verify: Call, tmp_path: Path) -> None:
 def test_a_table_has_no_field(verify: Call) -> None:
     Path("errors.csv").write_text(power(2.0))
     verify("judge", "errors.csv", "--no-page")
-    assert (
-        "the study has no such run; choose from none" in verify("report", "results/judge-errors", "--field", "16,4")[2]
-    )
+    assert "the case any_code has no error field" in verify("report", "results/judge-errors", "--field", "16,4")[2]
 
 
 def test_a_million_cells_are_written_out(verify: Call) -> None:

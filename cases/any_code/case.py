@@ -53,7 +53,7 @@ class Extrapolated:
 
 @dataclass(frozen=True)
 class Examined:
-    """What is found beside the verdicts: no checks, and of values what three levels say."""
+    """Analysis beside the verdicts: no checks, and of values what three levels say."""
 
     checks: tuple[Check, ...] = ()
     extrapolated: tuple[Extrapolated, ...] = ()

@@ -53,6 +53,6 @@ class Run(RunRecord):
 
 @dataclass(frozen=True, kw_only=True)
 class Result(ResultRecord[Run]):
-    """What a row says: an error, or an estimate of it from two values."""
+    """Value of a row: an error, or an estimate of it from two values."""
 
     run: Run

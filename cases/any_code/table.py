@@ -19,7 +19,7 @@ USUAL = Expectation(FORMAL)  # of the band
 
 @dataclass(frozen=True)
 class Expected:
-    """What a table is held against.
+    """Expectation that a table is held against.
 
     Parameters
     ----------

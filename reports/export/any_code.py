@@ -8,6 +8,6 @@ from mpm_verify.reports.sentences import any_code
 
 
 def more(record: Record) -> dict[str, Any]:
-    """How the table was read, and each three levels of values, the finest first."""
+    """Record of how the table was read, and each three levels of values, the finest first."""
     rows = [asdict(one) | {"stricter": any_code.code(one)} for one in record.analysis.more.extrapolated]
     return {"read": list(record.study.words), "extrapolated": rows}

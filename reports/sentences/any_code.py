@@ -40,7 +40,7 @@ def plain(name: str) -> str:
 
 
 def advice(wanted: Wanted, by: str, present: Sequence[float], exact: bool = True) -> str:
-    """What to change in the table; `present` are the cell sizes of its levels."""
+    """Advice on what to change in the table; `present` are the cell sizes of its levels."""
     number, an = ("error", "an") if exact else ("value", "a")
     if wanted.action is Action.FINISH:
         return f"that row needs {an} {number} that is finite"
