@@ -98,7 +98,7 @@ class Edges:
         return ""
 
     def line(self, side: Side, kind: str) -> str:
-        """How far the side is from the kind it is meant to be, or "" from any, what that looks like, what to write."""
+        """Line on how far the side is from the kind it is meant to be, or "" from any, and what to write."""
         meant = kind or min(NEEDS, key=lambda kind: self.miss(side, kind)[0])
         fraction, quantity = self.miss(side, meant)
         if fraction <= ROUNDED:

@@ -6,7 +6,6 @@ with what it is compiled to, named by its content.
 
 import hashlib
 import importlib.util
-import os
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -16,6 +15,7 @@ import numpy as np
 
 from mpm_verify.mms.printed import function
 from mpm_verify.solver._jit import F1, function_type, i8, kept_in, nothing
+from mpm_verify.solver.cache_folder import write
 from mpm_verify.solver.source_hash import source_hash
 from mpm_verify.solver.state import Floats
 
@@ -52,14 +52,12 @@ def compiled(source: str, columns_source: str, scalars_source: str) -> ExactKern
 
 
 def _load(source: str) -> Any:
-    """Import the source from its file; written once, whole or not at all."""
+    """Import the source from its file, which is written where it is not there or not the same."""
     content = hashlib.sha256(source.encode()).hexdigest()
     name = f"exact_{content[:16]}"
     path = kept_in("exact", content, source_hash("mpm_verify.mms.exact")) / f"{name}.py"
-    if not path.exists():
-        temporary = path.with_suffix(f".{os.getpid()}")
-        temporary.write_text(source)
-        os.replace(temporary, path)
+    if not path.is_file() or path.read_bytes() != source.encode():
+        write(path, source)
     spec = importlib.util.spec_from_file_location(name, path)
     assert spec is not None
     assert spec.loader is not None

@@ -60,7 +60,7 @@ def differs(run: Any) -> str:
     return ", ".join(
         f"{name}={getattr(run, name)}"
         for name, item in type(run).__dataclass_fields__.items()
-        if name != "case" and getattr(run, name) != item.default
+        if name not in ("case", "given") and item.compare and getattr(run, name) != item.default
     )
 
 

@@ -17,6 +17,7 @@ from mpm_verify.solver.failure import FailureKind
 from mpm_verify.solver.plugins import label
 
 Run = Any  # of any case
+SAID = ("measured",)  # fields that say again what a plan says
 USUAL = ("method", "solution", "ppc")  # fields that name a refinement in every table
 Result = ResultRecord[Any]
 
@@ -63,7 +64,7 @@ class Record:
         """Fields in which refinements differ, apart from method, solution and particle count."""
         heads = [dict(series.head) for series in self.series]
         return tuple(name for name in (heads[0] if heads else ())
-                     if name not in USUAL and len({head[name] for head in heads}) > 1)  # fmt: skip
+                     if name not in (*USUAL, *SAID) and len({head[name] for head in heads}) > 1)  # fmt: skip
 
     @cached_property
     def drawn(self) -> list[Series]:
@@ -82,6 +83,20 @@ class Record:
         more = [label(run.solution)] if several else []
         more += [f"{name} {getattr(run, name)}" for name in self.varied]
         return ", ".join([words.series(run), *more])
+
+    @property
+    def by(self) -> str:
+        """Column that tables name a level by: `cells`, or `h` where sizes were given."""
+        return str(getattr(self.study.runs[0], "by", "cells")) if self.study.runs else "cells"
+
+    def size(self, h: float) -> float:
+        """Level of a cell size in that column: a whole number of cells, or the size without the round-off of 1/h."""
+        return round(1 / h) if self.by == "cells" else float(f"{h:.14g}")
+
+    def named(self, h: float) -> str:
+        """Level of a cell size as text: `64`, `0.0125`."""
+        size = self.size(h)
+        return str(size) if isinstance(size, int) else f"{size:.6g}"
 
     def series_of(self, plan: QuantityPlan[Any]) -> Series:
         """Refinement that a planned quantity is measured on."""
@@ -141,8 +156,8 @@ def held(store: Store, study: Any) -> tuple[dict[str, Any], bool]:
     exact = {run.digest: result for run in study.runs if (result := store.get(run.digest))}
     if exact:
         return exact, False
-    old = {result.run: result for result in _all(store)}
-    found = {run.digest: old[run] for run in study.runs if run in old}
+    old = {repr(result.run): result for result in _all(store)}  # every field, those that are not compared too
+    found = {run.digest: old[repr(run)] for run in study.runs if repr(run) in old}
     return found, bool(found)
 
 

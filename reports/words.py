@@ -22,6 +22,7 @@ MEANING = {
     "INCONCLUSIVE": "the evidence does not decide; the reason names the run that would",
     "ERROR": "there is nothing to judge",
 }
+BOUNDS = {"at_least": "at least", "at_most": "at most"}  # ways of a check that are bounds
 DASH, MINUS, TIMES = "\N{EN DASH}", "\N{MINUS SIGN}", "\N{MULTIPLICATION SIGN}"
 
 
@@ -30,14 +31,24 @@ def method(name: str) -> str:
     return METHODS.get(name, label(name).replace("_", " "))
 
 
+def way(name: str) -> str:
+    """Way in which a check holds a number against another."""
+    return BOUNDS.get(name, name)
+
+
 def quantity(name: str) -> str:
     """Symbol of a quantity."""
     return QUANTITIES.get(name, name)
 
 
 def series(of: Any) -> str:
-    """Method and particle count: `CPDI, 4 per cell`."""
-    return f"{method(of.method)}, {of.ppc} per cell"
+    """Method and particle count: `CPDI, 4 per cell`; the method alone where there are no particles."""
+    return f"{method(of.method)}, {of.ppc} per cell" if hasattr(of, "ppc") else method(of.method)
+
+
+def measured(plan: Any, between: str = " in ") -> str:
+    """Quantity and norm of a plan: `u in rms`; the quantity alone where nobody says the norm."""
+    return str(plan.quantity) if plan.run.given else f"{plan.quantity}{between}{plan.norm}"
 
 
 def sci(value: float | None) -> str:

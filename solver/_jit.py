@@ -23,6 +23,7 @@ import llvmlite
 import numba
 from numba import boolean, float64, int64, types, void
 from numba.core.caching import CacheImpl, _CacheLocator
+from numba.core.errors import NumbaError
 
 from mpm_verify.solver import own_file
 from mpm_verify.solver.cache_folder import base, kernel_folder
@@ -87,7 +88,7 @@ class Locator(_CacheLocator):
         return str(self.folder.name)
 
     def get_disambiguator(self) -> str:
-        """What tells functions of one name in one file apart: their numbers and names, not their line."""
+        """Hash that tells functions of one name in one file apart: their numbers and names, not their line."""
         code = self.function.__code__
         numbers = [c for c in code.co_consts if not isinstance(c, str | CodeType | None)]
         return hashlib.sha256(repr((numbers, code.co_names, code.co_varnames)).encode()).hexdigest()[:8]
@@ -124,8 +125,7 @@ def kernel(signature: Any = None, *, parallel: bool = False, inline: bool = Fals
             return numba.njit(inline="always", error_model="numpy")(function)
         folder = folder_of(function)
         function.folder = folder  # type: ignore[attr-defined]
-        kept = folder is not None
-        compiled = numba.njit(signature, parallel=parallel, error_model="numpy", cache=kept)(function)
+        compiled = loaded(function, signature, folder, {"parallel": parallel, "error_model": "numpy"})
         # A kernel passed as a value is looked up by its signature each time, 25 us, and then twice in its library by
         # its name, 20 us each: more than half of a step of a small run.
         (result,) = compiled.overloads.values()
@@ -134,6 +134,23 @@ def kernel(signature: Any = None, *, parallel: bool = False, inline: bool = Fals
         return compiled
 
     return compile_function
+
+
+def loaded(function: Function, signature: Any, folder: Path | None, options: dict[str, Any]) -> Any:
+    """Function compiled or read from its folder; what is damaged there goes, and a full disk costs time alone."""
+    if folder is None:
+        return numba.njit(signature, cache=False, **options)(function)
+    try:
+        return numba.njit(signature, cache=True, **options)(function)
+    except NumbaError:
+        raise
+    except Exception:  # of pickle and of Numba, for a file that was cut
+        for file in folder.glob(f"*{function.__name__}-*.nb[ci]"):
+            file.unlink(missing_ok=True)
+    try:
+        return numba.njit(signature, cache=True, **options)(function)
+    except OSError:
+        return numba.njit(signature, cache=False, **options)(function)
 
 
 def function_type(signature: Any) -> Any:

@@ -6,6 +6,7 @@ it for a month.
 
 import atexit
 import fcntl
+import hashlib
 import os
 import re
 import shutil
@@ -19,6 +20,7 @@ from pathlib import Path
 
 DAY = 86400.0  # seconds
 UNUSED = 30 * DAY
+OTHERS = stat.S_IWGRP | stat.S_IWOTH  # others may write
 KERNELS = re.compile(r"[\w.-]+-[0-9a-f]{24}|removed-\w+")
 FORMER = re.compile(r"[0-9a-f]{16}-numba[\w.+]+")  # one folder for all kernels, of versions up to 0.4
 
@@ -29,7 +31,8 @@ def base() -> Path:
     home = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "mpm-verify"
     with suppress(OSError):
         home.mkdir(mode=0o700, parents=True, exist_ok=True)
-        if home.stat().st_uid == os.getuid() and os.access(home, os.W_OK):
+        found = home.stat()
+        if found.st_uid == os.getuid() and not found.st_mode & OTHERS and os.access(home, os.W_OK):
             return home
     spare = Path(tempfile.gettempdir()) / f"mpm-verify-{os.getuid()}"
     with suppress(OSError):
@@ -55,6 +58,7 @@ def kernel_folder(name: str) -> Path:
     except OSError:
         fresh = False
     if not fresh:
+        base().mkdir(mode=0o700, parents=True, exist_ok=True)  # it may have been removed since
         with _locked(fcntl.LOCK_SH):
             folder.mkdir(exist_ok=True)
             os.utime(folder)
@@ -63,25 +67,35 @@ def kernel_folder(name: str) -> Path:
 
 
 def kept(folder: str, name: str, make: Callable[[], str]) -> str:
-    """Text `name` of a folder of the cache, made where it is missing.
+    """Text `name` of a folder of the cache, made where it is missing or damaged.
 
-    It is written whole or not at all; where nothing can be written, on a full disk, it is made each time.
+    Its first line is the hash of the rest. Where nothing can be written, on a full disk, it is made each time.
     """
     try:
         file = kernel_folder(folder) / name
-        return file.read_text(encoding="utf-8")
-    except FileNotFoundError:
-        text = make()
     except OSError:
         return make()
-    temporary = file.with_name(f"{name}.{os.getpid()}")
-    try:
-        temporary.write_text(text, encoding="utf-8")
-        os.replace(temporary, file)
-    except OSError:
-        with suppress(OSError):
-            temporary.unlink()
+    with suppress(OSError, UnicodeDecodeError):
+        digest, _, text = file.read_text(encoding="utf-8").partition("\n")
+        if digest == hashlib.sha256(text.encode()).hexdigest():
+            return text
+    text = make()
+    with suppress(OSError):
+        write(file, f"{hashlib.sha256(text.encode()).hexdigest()}\n{text}")
     return text
+
+
+def write(file: Path, text: str) -> None:
+    """Write a file whole or not at all. Raises OSError."""
+    handle, name = tempfile.mkstemp(dir=file.parent, prefix=f".{file.name}.")
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as opened:
+            opened.write(text)
+        os.replace(name, file)
+    except BaseException:
+        with suppress(OSError):
+            os.unlink(name)
+        raise
 
 
 def tidy() -> None:

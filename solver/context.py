@@ -1,4 +1,4 @@
-"""What the parts of a step work on: transfers, smoothing and damping get this, and know nothing of each other."""
+"""Context of a step: what transfers, smoothing and damping work on; they know nothing of each other."""
 
 from dataclasses import dataclass, field
 from typing import Never

@@ -1,11 +1,11 @@
-"""Why a run cannot go on: a kind with numbers. The words for it are in reports/sentences/failures.py."""
+"""Failure of a run: a kind with numbers. The words for it are in reports/sentences/failures.py."""
 
 from dataclasses import dataclass, field
 from enum import StrEnum
 
 
 class FailureKind(StrEnum):
-    """What ended a run, or why there is no error of it; in brackets `numbers` of the Failure, and its `names`."""
+    """Kinds of what ended a run, or why there is no error of it; in brackets `numbers` of the Failure, its `names`."""
 
     INVERTED = "inverted"  # det F is not above zero
     DOMAIN_INVERTED = "domain_inverted"  # a domain with corners of its own is turned inside out
@@ -24,12 +24,13 @@ class FailureKind(StrEnum):
     NO_COLUMN = "no_column"  # such a file lacks what every answer has <file, column>
     PARTICLES = "particles"  # such a file has other particles than were given [found, expected] <file>
     NOT_RUN = "not_run"  # nobody has run it yet
+    OSCILLATES = "oscillates"  # no error can be estimated of a value that goes to and fro as cells get finer
     NO_ERROR = "no_error"  # it came to its end, and no error was measured
 
 
 @dataclass(frozen=True)
 class Failure:
-    """Why a run could not go on: a result, not a crash.
+    """Reason why a run could not go on: a result, not a crash.
 
     Parameters
     ----------

@@ -55,13 +55,18 @@ class Material:
     @property
     def name(self) -> str:
         """Name of the file in solver/material, the word on the command line; empty for a model of no file."""
-        files = (kind.__module__ for kind in type(self).__mro__ if kind.__module__.startswith(f"{MATERIALS}."))
-        return next(files, "").rpartition(".")[2]
+        module = type(self).__module__
+        return module.rpartition(".")[2] if module.startswith(f"{MATERIALS}.") else ""
 
     @property
     def friction_angle(self) -> float | None:
         """Angle of friction in degrees; None without friction."""
         return None
+
+    @property
+    def fails_as_mohr_coulomb(self) -> bool:
+        """Whether it fails and flows as Mohr-Coulomb in plane strain."""
+        return False
 
     @property
     def cohesion(self) -> float | None:

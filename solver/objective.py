@@ -22,7 +22,7 @@ SIGNATURE = nothing(function_type(UNROTATE), function_type(ROTATE), function_typ
 
 
 class Rate:
-    """How stress goes along with the motion.
+    """Objective rate: how stress goes along with the motion.
 
     Attributes
     ----------

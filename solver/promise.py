@@ -1,11 +1,11 @@
-"""What a method promises before any run: how its error falls on refinement. Imports nothing heavy."""
+"""Promise of a method before any run: how its error falls on refinement. Imports nothing heavy."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
 class Promise:
-    """How the error of u falls on refinement.
+    """Promise of how the error of u falls on refinement.
 
     Parameters
     ----------

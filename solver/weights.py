@@ -93,7 +93,7 @@ class Basis:
 
     @classmethod
     def promises(cls, crossing: bool) -> Promise:
-        """How the error of a body between walls falls on refinement.
+        """Promise of how the error of a body between walls falls on refinement.
 
         Parameters
         ----------
@@ -127,7 +127,7 @@ class Basis:
 
     @staticmethod
     def fault(F: Floats, domain: Floats, dx: float) -> Fault:
-        """Why the fill returns False for a particle with F (2,2) and domain (W,) on the whole grid, and numbers."""
+        """Fault for which the fill returns False for a particle with F (2,2) and domain (W,) on the whole grid."""
         return FailureKind.OUTSIDE_GRID, {}
 
     @staticmethod

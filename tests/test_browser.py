@@ -163,7 +163,7 @@ def material(folder: Path) -> Path:
     tests = ["biaxial", "shear_volume", "cyclic_shear", "properties"]
     axes = {"material": ["ubcsand"], "test": tests, "steps": [12]}
     record = ran(folder, build(Asked("element", axes), "verify material ubcsand"))
-    return page_of(spoilt(record, lambda checks: (*checks, replace(checks[0], found=9.0, way="at most"))))
+    return page_of(spoilt(record, lambda checks: (*checks, replace(checks[0], found=9.0, way="at_most"))))
 
 
 def column(folder: Path) -> Path:

@@ -107,3 +107,18 @@ def test_a_guessed_folder_is_not_trusted(spare: Path, monkeypatch: pytest.Monkey
     assert folder not in (spare, spare.parent / "elsewhere")
     assert stat.S_IMODE(folder.stat().st_mode) == 0o700
     monkeypatch.undo()
+
+
+@pytest.mark.parametrize("mode", [0o777, 0o770, 0o722])
+def test_a_folder_that_others_can_write_to_is_not_taken(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, mode: int
+) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    (tmp_path / "mpm-verify").mkdir()
+    (tmp_path / "mpm-verify").chmod(mode)
+    cache_folder.base.cache_clear()
+    try:
+        assert cache_folder.base() != tmp_path / "mpm-verify"
+    finally:
+        monkeypatch.undo()
+        cache_folder.base.cache_clear()

@@ -11,6 +11,7 @@ from mpm_verify.cases.column.execute import Gate, execute, gravity, setup
 from mpm_verify.cases.column.measure import Measure, connected, final, quantile, surface
 from mpm_verify.cases.column.run import ColumnRun
 from mpm_verify.cases.column.start import oedometric
+from mpm_verify.cases.harness.contract import case_named
 from mpm_verify.solver.failure import FailureKind, RunFailed
 from mpm_verify.solver.material.mohr_coulomb import MohrCoulomb
 from mpm_verify.solver.material.ubcsand import Ubcsand
@@ -248,6 +249,8 @@ def test_measures_of_known_shapes() -> None:
         ({"cells": 1}, "choose whole numbers from 2 to"),
         ({"cells": 2000}, "from 2 to 1000"),
         ({"channel": 7.3}, "must make whole cells"),
+        ({"damping_kind": "x"}, "must be one of local, objective"),
+        ({"limit": 0.0}, "or inf"),
         ({"g": 1e300}, "must be at most"),
         ({"material": "mohr_coulomb:rho0=1e-300"}, "steps would be needed"),
         ({"duration": 0.0}, "must be above zero"),
@@ -267,3 +270,16 @@ def test_measures_of_known_shapes() -> None:
 def test_refusals(change: Any, says: str) -> None:
     with pytest.raises(ValueError, match=says):
         setup(replace(SMALL, **change))
+
+
+@pytest.mark.parametrize("changes", [{"duration": 1e-6}, {"duration": 1e-9}, {"duration": 0.01, "damping": 0.99}])
+def test_a_column_that_has_had_no_time_to_fall_is_not_at_rest(changes: dict[str, float]) -> None:
+    """It stands as still as a heap at its end."""
+    result, _ = execute(replace(SMALL, **changes))
+    assert result.status == "finished"
+    assert result.values["rest"] == inf
+
+
+def test_a_step_above_the_stability_limit_is_told_before_the_run() -> None:
+    with pytest.raises(ValueError, match="above the stability limit of 1"):
+        case_named("column").check([replace(SMALL, courant=5.0)])

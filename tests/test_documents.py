@@ -16,6 +16,7 @@ import pytest
 from mpm_verify.cases.harness.shipped import shipped
 from mpm_verify.cases.harness.study_file import read
 from mpm_verify.cases.judging.records import ReasonCode
+from mpm_verify.cases.mms.deviations import SHOWN
 from mpm_verify.cases.mms.execute import execute
 from mpm_verify.cases.mms.run import Run
 from mpm_verify.solver.failure import FailureKind
@@ -26,7 +27,6 @@ from mpm_verify.solver.plugins import (
     SMOOTHINGS,
     SOLUTIONS,
     TRANSFERS,
-    available,
     create,
     is_file,
 )
@@ -330,4 +330,4 @@ def test_the_transfer_on_the_page_is_pic(tmp_path: Path) -> None:
 def test_the_workflow_in_readme_is_that_of_the_file() -> None:
     (shown,) = blocks(TOP / "README.md", "yaml")
     assert shown in WORKFLOW.read_text()
-    assert all(f"`{name}" in (DOCS / "glossary.md").read_text() for name in available(METHODS))
+    assert all(f"`{name}" in (DOCS / "glossary.md").read_text() for name in SHOWN)

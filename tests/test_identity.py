@@ -19,7 +19,7 @@ from mpm_verify.cases.harness.identity import identity
 from mpm_verify.cases.harness.runner import RunnerError, process_pool, run_study
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.cases.mms.run import Run
-from mpm_verify.solver import own_file
+from mpm_verify.solver import own_file, source_hash
 from mpm_verify.solver.plugins import MATERIALS, METHODS, SOLUTIONS, available
 from mpm_verify.solver.source_hash import closure, parse
 
@@ -127,6 +127,11 @@ def test_what_voids_nothing(tree: Tree) -> None:
     tree.append("solver/step.py", "# a comment\n")
     tree.replace("solver/basis/cpdi.py", "def fill(", "# a comment\ndef fill(")
     tree.replace("solver/layout.py", "must lie between", "has to lie between")
+    tree.replace("cases/mms/run.py", "Cells along a side of the domain.", "Cells.")
+    tree.replace("solver/plugins.py", "choose from", "take one of")
+    tree.replace("cases/mms/stability.py", "is above the stability limit of", "is beyond")
+    tree.replace("solver/basis/cpdi.py", "Brannon & Burghardt 2011", "Brannon and Burghardt (2011)")
+    tree.replace("solver/plugins.py", "or give a file", "or name a file")
     tree.append("reports/pages/mms.py")
     tree.append("verify/commands/mms.py")
     tree.append("cases/mms/case.py")
@@ -346,3 +351,73 @@ def test_the_closure_is_found_in_the_text_as_python_imports_it() -> None:
             named.add(str(node.module))
     assert len(named) > 10
     assert named <= closure("mpm_verify.cases.mms.execute").keys()
+
+
+# ---- what a user's file finds elsewhere
+
+
+def library(folder: Path, monkeypatch: pytest.MonkeyPatch, text: str) -> Path:
+    """A module `their_library` in a folder of its own, on Python's path and away from the user's file."""
+    folder.mkdir(parents=True, exist_ok=True)
+    monkeypatch.syspath_prepend(str(folder))
+    (folder / "their_library.py").write_text(text)
+    return folder / "their_library.py"
+
+
+ELSEWHERE = ["import their_library", "from their_library import f", "def late():\n    from their_library import f\n"]
+
+
+@pytest.mark.parametrize("head", ELSEWHERE)
+def test_a_library_elsewhere_counts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, head: str) -> None:
+    file, other = tmp_path / "mine" / "mine.py", library(tmp_path / "there", monkeypatch, "f = 1.0\n")
+    file.parent.mkdir()
+    file.write_text(head)
+    before = source_hash.file_hash(file)
+    other.write_text("# a comment\nf = 1.0\n")
+    assert source_hash.file_hash(file) == before
+    other.write_text("f = 1.05\n")
+    assert source_hash.file_hash(file) != before
+
+
+def test_what_a_library_elsewhere_imports_counts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A module beside it, and one of a package that it belongs to."""
+    file, other = tmp_path / "mine" / "mine.py", library(tmp_path / "there", monkeypatch, "import their_helper\n")
+    file.parent.mkdir()
+    file.write_text("import their_library\n")
+    (other.parent / "their_helper.py").write_text("g = 1.0\n")
+    before = source_hash.file_hash(file)
+    (other.parent / "their_helper.py").write_text("g = 2.0\n")
+    assert source_hash.file_hash(file) != before
+
+
+def test_an_installed_package_counts_by_its_version(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file, other = tmp_path / "mine.py", library(tmp_path / "site-packages", monkeypatch, "f = 1.0\n")
+    file.write_text("import their_library\n")
+    monkeypatch.setattr(source_hash, "version", lambda name: "1.0")
+    before = source_hash.file_hash(file)
+    other.write_text("f = 2.0\n")
+    assert source_hash.file_hash(file) == before
+    monkeypatch.setattr(source_hash, "version", lambda name: "1.1")
+    assert source_hash.file_hash(file) != before
+
+
+def test_python_and_our_libraries_are_not_read(tmp_path: Path) -> None:
+    file = tmp_path / "mine.py"
+    file.write_text("import os, numpy, sympy, scipy.optimize, nowhere_to_be_found\n")
+    assert set(source_hash.closure("mine", tmp_path)) == {"mine"}
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [
+        ("symbols('X Y')", "symbols('X Z')"), ("symbols('bx by')", "symbols('by bx')"), ("'at_least'", "'at_most'"),
+        ("f'{a} = {b}'", "f'{a} == {b}'"), ("'if x:\\n the'", "'if y:\\n the'"),
+    ],
+)  # fmt: skip
+def test_a_text_that_computes_is_no_sentence(one: str, other: str) -> None:
+    assert source_hash.parse(f"x = {one}".encode()) != source_hash.parse(f"x = {other}".encode())
+
+
+@pytest.mark.parametrize("text", ["'Cells of the grid'", "f'{a} is above {b}'", "'Brannon & Guilkey 2013'"])
+def test_a_sentence_does_not_count(text: str) -> None:
+    assert source_hash.parse(f"x = {text}".encode()) == source_hash.parse(b"x = 'the other one'")

@@ -12,11 +12,12 @@ import pytest
 
 from mpm_verify.cases.harness.build import Asked, build
 from mpm_verify.cases.harness.runner import Ticker
+from mpm_verify.cases.mms.deviations import SHOWN
 from mpm_verify.cases.mms.execute import execute
 from mpm_verify.cases.mms.expectations import expected, promised
-from mpm_verify.cases.mms.time_step import rounded, speed_parameter
+from mpm_verify.cases.mms.stability import rounded, speed_parameter
 from mpm_verify.mms.cells import check_cells, fits, fitting, ratio
-from mpm_verify.solver.plugins import METHODS, SOLUTIONS, available, create, label
+from mpm_verify.solver.plugins import SOLUTIONS, create, label
 from mpm_verify.verify.main import main
 
 EXAMPLE = "tests/own_solution.py"
@@ -52,10 +53,10 @@ def verify(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], 
 
 def test_the_order_that_a_method_promises() -> None:
     """Where particles cross cells only the CPDI family keeps its order; where none does, all do."""
-    kept = {m for m in available(METHODS) if promised(m, create(SOLUTIONS, EXAMPLE)) is not None}
+    kept = {m for m in SHOWN if promised(m, create(SOLUTIONS, EXAMPLE)) is not None}
     assert kept == {"cpdi", "cpdi2"}
     still = create(SOLUTIONS, f"{EXAMPLE}:A=1e-6")
-    assert {promised(m, still) for m in available(METHODS)} == {2.0}
+    assert {promised(m, still) for m in SHOWN} == {2.0}
 
 
 def test_what_is_expected_of_a_file(tmp_path: Path) -> None:

@@ -2,14 +2,17 @@
 
 import json
 import os
+import shutil
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
 import pytest
 import sympy as sp
 
+from mpm_verify.mms import exact
 from mpm_verify.mms.manufacture import manufacture
 from mpm_verify.mms.printed import folder, function, printed
 from mpm_verify.solver import cache_folder
@@ -130,10 +133,79 @@ def test_full_disk_costs_time_alone(cache: Path) -> None:
 
 
 def test_nothing_is_left_of_a_write_that_failed(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def full(self: Path, text: str, **kwargs: object) -> int:
-        self.touch()
+    def full(source: str, target: Path) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(Path, "write_text", full)
+    monkeypatch.setattr(os, "replace", full)
     assert kept("texts", "u", lambda: "made") == "made"
     assert list((cache / "texts").iterdir()) == []
+
+
+DAMAGED = {"empty": b"", "cut": b"0123", "binary": b"\xff\xfe\x00", "altered": None, "without its hash": b"made"}
+
+
+@pytest.mark.parametrize("how", DAMAGED)
+def test_damaged_text_is_made_again(cache: Path, how: str) -> None:
+    kept("texts", "u", lambda: "made")
+    file, content = cache / "texts" / "u", DAMAGED[how]
+    whole = file.read_bytes()
+    file.write_bytes(whole.replace(b"made", b"mode") if content is None else content)
+    assert kept("texts", "u", lambda: "made") == "made"
+    assert file.read_bytes() == whole
+    assert kept("texts", "u", lambda: "not asked for") == "made"
+
+
+def test_text_is_made_where_the_cache_is_gone(cache: Path) -> None:
+    kept("texts", "u", lambda: "made")
+    shutil.rmtree(cache)
+    assert kept("texts", "u", lambda: "made") == "made"
+    assert (cache / "texts" / "u").exists()
+
+
+def test_threads_read_whole_texts(cache: Path) -> None:
+    """All write the same text at once; who reads it reads all of it or makes it."""
+    long = "x" * 200_000
+
+    def ask(number: int) -> str:
+        if number % 3 == 0:
+            (cache / "texts" / "u").unlink(missing_ok=True)
+        return kept("texts", "u", lambda: long)
+
+    with ThreadPoolExecutor(8) as pool:
+        assert set(pool.map(ask, range(120))) == {long}
+
+
+def test_damaged_kernel_source_is_written_again(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A file of the right name with another content is not what its name says."""
+    folder_ = cache / "exact"
+    folder_.mkdir()
+    monkeypatch.setattr(exact, "kept_in", lambda *words: folder_)
+    source = "def exact():\n    return 1\n"
+    assert exact._load(source)() == 1
+    (file,) = folder_.glob("exact_*.py")
+    file.write_text("def exact():\n    return 2\n")
+    assert exact._load(source)() == 1
+
+
+MATERIAL = """
+from pathlib import Path
+from mpm_verify.solver.material.neo_hookean import NeoHookean
+
+class Mine(NeoHookean):
+    def energy(self, F, log):
+        return float(Path({path!r}).read_text()) * super().energy(F, log)
+"""
+
+
+def test_energy_of_a_users_file_is_kept_nowhere(tmp_path: Path, cache: Path) -> None:
+    """It reads another number between the naming and the derivation; who asks later gets what it reads then."""
+    from mpm_verify.cases.mms.exact import manufactured
+
+    file, data = tmp_path / "mine.py", tmp_path / "k.txt"
+    data.write_text("1.0")
+    file.write_text(MATERIAL.format(path=str(data)))
+    usual = manufactured("axis_aligned", "neo_hookean").sigma(X, 0.2)
+    mine = manufactured("axis_aligned", str(file))
+    data.write_text("3.0")
+    np.testing.assert_allclose(mine.sigma(X, 0.2), usual, rtol=1e-12)
+    assert not mine.folder

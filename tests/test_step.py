@@ -403,12 +403,19 @@ def two_bodies(name: str) -> tuple[Model, Any]:
     return Model(m.grid, shuffled, m.basis, LAW, m.walls, m.dt), rows
 
 
+def known(name: str) -> None:
+    """A basis that was dropped in has no entry in the tables above: the test is skipped, and says what to write."""
+    if name not in EDGE or name not in REACH:
+        pytest.skip(f"write in EDGE and REACH how far {name} reaches")
+
+
 def row_of(m: Model, particle: int) -> int:
     return int(np.flatnonzero(m.particles.id == particle)[0])
 
 
 @every_basis
 def test_leaving_the_grid(name: str) -> None:
+    known(name)
     m, rows = two_bodies(name)
     free(m).particles.v[np.isin(m.particles.id, rows)] = (20.0, 0.0)
     X = m.particles.in_initial_order("X").copy()
@@ -440,6 +447,7 @@ def test_inverted(name: str) -> None:
 @every_basis
 def test_nan_velocity(name: str) -> None:
     """One NaN poisons the nodes around it; the particle named is the one it came from or one next to it."""
+    known(name)
     m, rows = two_bodies(name)
     X, start = m.particles.in_initial_order("X").copy(), rows[7]
     go(m, 3)

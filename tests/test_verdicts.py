@@ -12,6 +12,7 @@ from mpm_verify.cases.harness.study import QuantityPlan, Study
 from mpm_verify.cases.harness.verdicts import Finding, findings, refinement
 from mpm_verify.cases.judging.order import Expectation, Outcome, Verdict
 from mpm_verify.cases.judging.records import Action, Ended, Reason, ReasonCode, Wanted
+from mpm_verify.cases.mms import deviations
 from mpm_verify.cases.mms.expectations import later_with_9, registered, registry
 from mpm_verify.cases.mms.run import QUANTITIES, Result, Run
 from mpm_verify.reports.sentences import verdicts
@@ -201,7 +202,9 @@ def built(command: str = "verify mms", name: str = "mms", **changes: object) -> 
     return build(Asked("mms", listed), command, name)
 
 
-REGISTERED = sorted({(entry.method, entry.solution) for entry in registry() if entry.solution in available(SOLUTIONS)})
+REGISTERED = sorted(
+    {(e.method, e.solution) for e in registry() if e.solution in available(SOLUTIONS) and e.method in deviations.SHOWN}
+)
 
 
 @pytest.mark.parametrize(("method", "solution"), REGISTERED)

@@ -38,7 +38,7 @@ WORDS = {  # what to say: what not, in the sense that is meant
 }
 RULES = {say: re.compile(pattern, re.IGNORECASE) for say, pattern in WORDS.items()}
 NAMES = {"place", "places", "neighbour", "neighbours", "law", "laws", "share", "shares", "felt", "misreading"}
-START = re.compile(r"(?:Of|By|To|Their|Its|It|In|From|For|With|On|At)\b")
+START = re.compile(r"(?:What|How|Why|Of|By|To|Their|Its|It|In|From|For|With|On|At)\b")
 ALLOWED: dict[tuple[str, str], str] = {}  # (file, what is found): why; none yet
 
 Found = Iterator[tuple[int, str]]

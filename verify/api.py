@@ -93,15 +93,20 @@ def study(
         Where the folder cannot be read or written.
     """
     from mpm_verify.cases.harness.build import Asked, build
-    from mpm_verify.cases.harness.store import Store
-    from mpm_verify.verify.run import Settings, affordable, compute, named
 
     values = {key: list(value) if isinstance(value, list | tuple) else [value] for key, value in axes.items()}
     words = [f"{key}={value!r}" for key, value in axes.items()]
     command = f"mpm_verify.study({', '.join([repr(case), *words])})"
-    asked: Study[Any] = build(Asked(case, values, replicates, quick), command)
+    return conducted(build(Asked(case, values, replicates, quick), command), out, jobs, threads)
+
+
+def conducted(asked: "Study[Any]", out: Path | str | None, jobs: int | None = 1, threads: int = 1) -> "StoredStudy":
+    """Stored study of one that is asked for: what its folder does not hold is run."""
+    from mpm_verify.cases.harness.store import Store
+    from mpm_verify.verify.run import Settings, affordable, compute, named
+
     settings = Settings(named(asked, Path(out) if out else None), jobs=jobs, threads=threads, yes=True)
-    store = Store(settings.folder, case)
+    store = Store(settings.folder, asked.case)
     affordable(asked, store, settings)
     with store.locked():
         store.create(asked)
@@ -279,3 +284,55 @@ def judge(
     levels = [Level(1 / n, (float(error),)) for n, error in zip(cells, errors, strict=True)]
     found = rule(levels, Expectation(order, below, above), floor=floor, dt_halved=dt_halved)
     return Judgement(str(found.outcome), reason(found.reason), found.observed, found.interval, found.local_orders)
+
+
+def judge_table(
+    file: Path | str,
+    order: float | None = None,
+    *,
+    below: float = 0.2,
+    above: float = 0.3,
+    floor: float = 0.0,
+    exact: bool = True,
+    steady: bool = False,
+    out: Path | str | None = None,
+) -> "StoredStudy":
+    """Judge a table of any code by the order rule, as `verify judge` does.
+
+    Parameters
+    ----------
+    file
+        CSV, TSV or JSON file with the columns cells or h, and error; method, quantity, replicate and half_dt_error if
+        it has them.
+    order, below, above
+        Expected order, and how far below and above it the whole interval may lie; without an order nothing is judged.
+    floor
+        Round-off floor of the numbers, in their unit.
+    exact
+        Whether the numbers are errors; otherwise they are values of a quantity, and their errors are estimated.
+    steady
+        Whether there is no time step.
+    out
+        Folder of the study; usual is results/judge-NAME.
+
+    Returns
+    -------
+    StoredStudy
+        Its verdicts, tables and page.
+
+    Raises
+    ------
+    ValueError
+        With one line for a file that cannot be read, with the number of the row.
+    StoreError
+        Where the folder cannot be read or written.
+
+    References
+    ----------
+    Celik, Ghia, Roache, Freitas, Coleman & Raad (2008), J. Fluids Eng. 130, 078001, doi:10.1115/1.2960953
+    """
+    from mpm_verify.cases.any_code.table import Expected
+    from mpm_verify.verify.commands.any_code import study_of
+
+    expected = Expected(order, below, above, floor, exact, steady)
+    return conducted(study_of(Path(file), expected, f"mpm_verify.judge_table({str(file)!r}, {order!r})"), out)

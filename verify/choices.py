@@ -27,9 +27,9 @@ def choices(package: str, own: bool = False) -> str:
     return ", ".join(available(package)) + "; or a file of your own" * own
 
 
-def integers(text: str, option: str) -> tuple[int, ...]:
-    """Whole numbers of a text such as `8,16,32`; a usage error that names the option otherwise."""
+def integers(text: str, option: str, example: str = "8,16,32,64") -> tuple[int, ...]:
+    """Whole numbers of a text such as `8,16,32`; a usage error that names the option, with an example, otherwise."""
     try:
         return tuple(int(part) for part in text.split(","))
     except ValueError:
-        raise typer.TyperException(f"{option} {text!r} is not a list of whole numbers; write 8,16,32,64") from None
+        raise typer.TyperException(f"{option} {text!r} is not a list of whole numbers; write {example}") from None

@@ -108,6 +108,10 @@ def main() -> None:
         from importlib.metadata import version
 
         sys.exit(told(f"verify {version('mpm-verify')}\n", 0))
+    for before, word in zip(sys.argv, sys.argv[1:], strict=False):  # of a variable that is not set
+        if not word or (word.startswith("--") and word.endswith("=")):
+            name = word or (before if before.startswith("-") else "an argument")
+            sys.exit(complain(f"{name.removesuffix('=')} is empty; give it a value, or leave it out"))
     if not asked[0].startswith("-") and not asked[0].endswith(".py") and asked[0] not in files():
         from mpm_verify.solver.plugins import meant
 
@@ -118,8 +122,6 @@ def main() -> None:
 
 def called(asked: str) -> int:
     """Run a command, and give its exit code."""
-    from contextlib import suppress
-
     import typer
 
     from mpm_verify.verify.terminal.output import printing
@@ -131,19 +133,26 @@ def called(asked: str) -> int:
             raise KeyboardInterrupt
     except typer.TyperException as error:
         code = complain(message_of(error), USAGE if getattr(error, "exit_code", 1) == 1 else error.exit_code)
-    except (typer.Abort, KeyboardInterrupt):
+    except (typer.Abort, KeyboardInterrupt) as error:
+        if isinstance(error.__context__, EOFError):  # Typer takes it for an answer that nobody gave
+            return defect(error.__context__)
         code = complain("stopped; what was finished is stored, and the same command goes on from there", STOPPED)
     except SystemExit as end:  # of the completion; and 1, which would read as a verdict, where nobody reads a help text
         code = 0 if end.code == 1 else end.code
-    except Exception:
-        with suppress(OSError, ValueError, AttributeError):
-            import traceback
-
-            traceback.print_exc()
-        code = complain(
-            "this is a defect of verify, not of what it verifies; please report it with the lines above", DEFECT
-        )
+    except Exception as error:
+        return defect(error)
     return code if isinstance(code, int) else 0
+
+
+def defect(error: BaseException) -> int:
+    """Print the traceback of an error that is ours, and what to do with it; gives the exit code."""
+    with contextlib.suppress(OSError, ValueError, AttributeError):
+        import traceback
+
+        traceback.print_exception(error)
+    return complain(
+        "this is a defect of verify, not of what it verifies; please report it with the lines above", DEFECT
+    )
 
 
 def message_of(error: Exception) -> str:
@@ -180,6 +189,8 @@ def run() -> None:
     """Console script: main, and out. Python takes half a second to take the libraries apart, for nothing."""
     try:
         main()
+    except KeyboardInterrupt:
+        _exit(complain("stopped; nothing was begun", STOPPED))
     except SystemExit as end:
         with contextlib.suppress(OSError, ValueError, AttributeError):
             sys.stdout.flush()

@@ -222,13 +222,18 @@ def estimate(study: "Study[Any]", store: Any, settings: Settings) -> Estimate:
 def affordable(study: "Study[Any]", store: Any, settings: Settings) -> None:
     """Raise ValueError for a study that cannot be run, or that takes hours and has no --yes."""
     needed = estimate(study, store, settings)
+    if refused := refusal(needed, settings):
+        raise ValueError(f"{needed}: {refused}")
+
+
+def refusal(needed: Estimate, settings: Settings) -> str:
+    """Reason why a study is not run, and what to type; empty where it is."""
     there = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     if needed.memory > there:
-        raise ValueError(
-            f"{needed}: this machine has {there / 2**30:.1f} GB; take fewer cells or particles per cell, or --jobs 1"
-        )
+        return f"this machine has {there / 2**30:.1f} GB; take fewer cells or particles per cell, or --jobs 1"
     if needed.seconds > HOUR and not settings.yes:
-        raise ValueError(f"{needed}: add --yes to run it, or --dry-run to see its runs")
+        return "add --yes to run it, or --dry-run to see its runs"
+    return ""
 
 
 def told_plan(study: "Study[Any]", store: Any, settings: Settings) -> int:
@@ -240,6 +245,8 @@ def told_plan(study: "Study[Any]", store: Any, settings: Settings) -> int:
         for run, text in zip(study.runs, told_apart(study.runs), strict=True):
             typer.echo(f"{'stored ' if store.get(run.digest) else 'to do  '} {run.digest}  {text}")
         typer.echo(f"{study.name}: {needed}")
+        if refused := refusal(needed, settings):
+            typer.echo(f"it would not be run: {refused}")
     return 0
 
 

@@ -20,6 +20,8 @@ def title(runs: Sequence[ColumnRun]) -> str:
 def check(runs: Sequence[ColumnRun]) -> None:
     """Raise ValueError for what no column can have, by setting up a small one of each kind."""
     for run in runs:
+        if run.courant > 1:
+            raise ValueError(f"courant = {run.courant} is above the stability limit of 1; 0.4 is usual")
         steps_of(run, material_of(run))
     kinds = (replace(run, cells=2, ppc=4, aspect=7.0, channel=18.0, courant=0.4, duration=1e-3) for run in runs)
     for kind in dict.fromkeys(kinds):

@@ -10,7 +10,7 @@ its momentum is not counted. All these are told, and not judged. How many runs c
 """
 
 from collections.abc import Sequence
-from math import inf, sqrt
+from math import inf, nan, sqrt
 from typing import Any
 
 from mpm_verify.cases.column.claims import FinishedRun, values
@@ -43,9 +43,9 @@ def checks(study: ColumnStudy, ran: Sequence[FinishedRun]) -> list[Check]:
          STABLE, "stability of the step"),
     ]  # fmt: skip
     rested = sum(one.values["rest"] < inf for one in ran)
-    found = [Check("Runs", f"runs at rest out of {len(study.runs)}", float(rested), float(study.finish),
-                   "at least", "declared by the study")]  # fmt: skip
-    way: Way = "at most"
+    found = [Check("Runs", f"runs at rest out of {len(study.runs)}", float(rested) if ran else nan, float(study.finish),
+                   "at_least", "declared by the study")]  # fmt: skip
+    way: Way = "at_most"
     for name, runs, numbers, bound, source in asked:
         if runs:
             worst = max(range(len(runs)), key=lambda k: numbers[k])

@@ -8,7 +8,7 @@ volume V = J V0 that particles keep, over the space in which they are, within th
 drift closer than their det F knows, or apart, it is not, and the heap is smaller, or larger, than its material.
 """
 
-from math import cos, inf, radians, sin
+from math import cos, inf, radians, sin, sqrt
 from typing import Any
 
 import numpy as np
@@ -207,7 +207,8 @@ def scaled(model: Model) -> dict[str, float]:
 def final(run: ColumnRun, curves: dict[str, Floats]) -> dict[str, float]:
     """Numbers of a run: those at its end, the largest of some, and when it came to rest.
 
-    `rest`: since when the kinetic energy of the grid is below AT_REST of the potential energy; inf if it is not.
+    `rest`: since when the kinetic energy of the grid is below AT_REST of the potential energy; inf if it is not, and of
+    a run too short for a column to have fallen, sqrt(h0 / g).
     `area`: under the final profile, over that of the column: 1 and what it has dilated, or less where it has shrunk.
     Fractions of the initial potential energy, largest at any time: `unbalanced`, of the budget; `misworked`, between
     the work of the material and that of the forces; `lost` by the method; `plastic_falls`, that plastic work gave back.
@@ -231,7 +232,8 @@ def final(run: ColumnRun, curves: dict[str, Floats]) -> dict[str, float]:
     moving = np.flatnonzero(curves["on_grid"] > AT_REST * first)
     last = int(moving[-1]) if len(moving) else 0
     t, height = curves["t"], curves["height"]
-    values["rest"] = float(t[last + 1]) if last + 1 < len(t) else inf
+    fallen = t[-1] >= sqrt(run.height / run.g)
+    values["rest"] = float(t[last + 1]) if fallen and last + 1 < len(t) else inf
     values["creep"] = float(height[t >= 0.8 * t[-1]][0] - height[-1]) / max(float(height[-1]), 1e-300)
     plastic = curves["plastic"]
     values["unbalanced"] = float(np.abs(curves["residual"]).max()) / first

@@ -7,6 +7,7 @@ from typing import ClassVar, Literal, get_args
 from mpm_verify.cases.harness.study import ResultRecord, RunRecord, Study, axis
 from mpm_verify.solver.plugins import MATERIALS, METHODS, SMOOTHINGS, TRANSFERS, label, load, split
 
+KINDS = ("local", "objective")
 Start = Literal["none", "k0", "oedometric"]
 Wall = Literal["roller", "fixed"]
 MOST = 1000  # cells: 4 GB of grid
@@ -32,7 +33,7 @@ class ColumnRun(RunRecord):
     ppc: int = axis(9, "Particles per cell, square numbers.")
     material: str = axis("mohr_coulomb", "Constitutive model in rate form.", MATERIALS)
     damping: float = axis(0.0, "Fraction of the unbalanced force at each node, 0.05 for 5 %.")
-    damping_kind: str = axis("local", "local (component by component) or objective.", choices=("local", "objective"))
+    damping_kind: str = axis("local", "local (component by component) or objective.", choices=KINDS)
     smoothing: str = axis("none", "none, or smoothing of rates and stresses.", SMOOTHINGS)
     transfer: str = axis("flip", "Transfer between particles and grid.", TRANSFERS)
     deformation: str = axis(
@@ -61,9 +62,12 @@ class ColumnRun(RunRecord):
             raise ValueError(
                 f"cells = {self.cells} cannot be run; choose whole numbers from 2 to {MOST} over the width"
             )
-        for name in ("courant", "duration", "gate", "limit", "width", "aspect", "g"):
-            if not getattr(self, name) > 0 or (getattr(self, name) == inf and name not in ("gate", "limit")):
+        for name in ("courant", "duration", "width", "aspect", "g"):
+            if not 0 < getattr(self, name) < inf:
                 raise ValueError(f"{name} = {getattr(self, name)} must be above zero and finite")
+        for name in ("gate", "limit"):
+            if not getattr(self, name) > 0:
+                raise ValueError(f"{name} = {getattr(self, name)} must be above zero, or inf")
         if abs(self.aspect * self.cells - round(self.aspect * self.cells)) > 1e-9:
             raise ValueError(f"aspect = {self.aspect} must make whole cells of the height: {self.cells} are the width")
         if not 2 <= self.channel <= 100:
@@ -72,9 +76,9 @@ class ColumnRun(RunRecord):
             raise ValueError(f"channel = {self.channel} must make whole cells: {self.cells} are the width")
         if self.g > 1e4:
             raise ValueError(f"g = {self.g} must be at most 1e4")
-        for name, value, words in (("start", self.start, Start), ("left", self.left, Wall)):
-            if value not in get_args(words):
-                raise ValueError(f"{name} = {value!r} must be one of {', '.join(get_args(words))}")
+        for name, words in (("start", get_args(Start)), ("left", get_args(Wall)), ("damping_kind", KINDS)):
+            if getattr(self, name) not in words:
+                raise ValueError(f"{name} = {getattr(self, name)!r} must be one of {', '.join(words)}")
 
     @property
     def height(self) -> float:

@@ -57,9 +57,9 @@ def checks(material: Any, studied: ElementStudy) -> list[Check]:
     if studied.source:
         second = 1e-6 * (1600 / studied.steps[-1]) ** 2  # what order 2 makes of 1e-6 in 1600 steps
         allowed = max(second, ROUND_OFF) if material.order == 2 else ROUND_OFF
-        found.append(Check(group, "error at the end, finest", finest, allowed, "at most", studied.source))
+        found.append(Check(group, "error at the end, finest", finest, allowed, "at_most", studied.source))
     if material.order == 2 and not studied.test.cyclic and not len(studied.test.points):
-        found.append(Check(group, "order in the strain step", studied.order, 1.9, "at least", "midpoint scheme"))
+        found.append(Check(group, "order in the strain step", studied.order, 1.9, "at_least", "midpoint scheme"))
     return found
 
 

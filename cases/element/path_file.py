@@ -1,12 +1,9 @@
 """A strain path from a CSV file, as an element test of which all strains are given.
 
 The header names the columns exx, eyy, and exy (of the tensor) or gxy = 2 exy, in any order and case, tension positive;
-`exx [%]` or `exx_pct` is in per cent. Columns stand between semicolons, tabs, commas or spaces, whichever the header
-has first in this order; a decimal comma is taken where commas do not separate. `#` begins a comment; where the first
-row is of numbers, the comment above it is the header.
+`exx [%]` or `exx_pct` is in per cent. How a file may look otherwise stands in cases/harness/sheet.py.
 """
 
-import csv
 import re
 from collections import Counter
 from dataclasses import dataclass
@@ -16,6 +13,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from mpm_verify.cases.element.paths import XX, XY, YY, ElementTest, PathSource
+from mpm_verify.cases.harness import sheet as written
 from mpm_verify.solver.state import Floats
 
 Units = Literal["percent", "fraction"]
@@ -24,8 +22,6 @@ PLAUSIBLE, LARGEST = (
     0.5,
     10.0,
 )  # of a strain: beyond the first it may be a percentage, beyond the second it is not a strain
-MARKS = ";\t,"
-BLANK = " \t,;\"'"
 UNITS = {
     **dict.fromkeys(("%", "pct", "percent", "per cent", "per_cent"), "percent"),
     **dict.fromkeys(("-", "1", "m/m", "mm/mm", "fraction"), "fraction"),
@@ -37,7 +33,6 @@ STRAIN = re.compile(
     rf"(d|log|ln|true|total)?[\s_]*(e|eps|epsilon|\u03b5|\u03f5|g|gam|gamma|\u03b3|strain)[\s_.]*{AXES}"
 )
 NO_PLANE = re.compile(r".*(z|3).?")  # the index of a strain that plane strain has not
-NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([edED][+-]?\d+)?", re.ASCII)
 
 
 @dataclass(frozen=True)
@@ -99,60 +94,14 @@ def from_file(path: File, units: str = "") -> ElementTest:
 
 def read(path: File) -> Sheet:
     """Read the file as columns and rows, none of them ragged. Raises ValueError."""
-    lines = content(decoded(path))
-    if not lines:
-        raise ValueError(f"{path} must have a header with {TAKEN}, and rows below it")
-    head = lines[0][1]
-    mark = next((mark for mark in MARKS if mark in head), " ")
-    try:
-        first, *rows = [(line, split(text, mark)) for line, text in lines]
-    except csv.Error:
-        raise ValueError(f"{path} is not CSV text; save it as CSV in UTF-8") from None
-    for line, cells in rows:
-        if len(cells) != len(first[1]):
-            comma = "; where a comma is the decimal sign, semicolons must separate" if mark == "," else ""
-            raise ValueError(f"{path}, line {line}: {len(cells)} cells, and the header has {len(first[1])}{comma}")
-    names, units = zip(*map(named, first[1]), strict=True)
-    return Sheet(path, names, units, rows)
-
-
-def decoded(path: File) -> str:
-    """Text of the file. Raises ValueError with what to save it as."""
-    try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise ValueError(f"{path}: {(error.strerror or str(error)).lower()}") from None
-    if data[:2] in (b"\xff\xfe", b"\xfe\xff") or b"\0" in data[:1000]:
-        raise ValueError(f"{path} is UTF-16 text or not text; save it as CSV in UTF-8")
-    try:
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        raise ValueError(f"{path} is not CSV text in UTF-8; save it as CSV in UTF-8") from None
-
-
-def content(text: str) -> list[tuple[int, str]]:
-    """Lines that hold something, numbered from 1: the header first, which may be the last comment above numbers."""
-    kept, comment = [], (0, "")
-    for number, line in enumerate(re.split(r"\r\n|\r|\n", text), start=1):
-        bare, _, remark = line.partition("#")
-        if bare.strip(BLANK) and not re.fullmatch(r'"?sep=.?"?', bare.strip(" ")):  # what a spreadsheet writes first
-            kept.append((number, bare.strip(" ")))
-        elif remark and not kept:
-            comment = (number, remark.strip(" "))
-    numbers = kept and not re.search(r"[a-df-z]", kept[0][1], re.IGNORECASE)
-    return [comment, *kept] if numbers and comment[1] else kept
-
-
-def split(line: str, mark: str) -> list[str]:
-    """Cells of a line, without the spaces around them."""
-    if mark == " ":
-        return re.sub(r"\s+(?=[\[(<%])", "", line).split()
-    return [cell.strip() for cell in next(csv.reader([line], delimiter=mark, skipinitialspace=True))]
+    found = written.read(path, f"a header with {TAKEN}, and rows below it")
+    names, units = zip(*map(named, found.header), strict=True)
+    return Sheet(path, names, units, found.rows)
 
 
 def named(header: str) -> tuple[str, str]:
     """Name and unit of a column, in lower case; the unit as UNITS has it, or as it is written."""
-    text = header.strip(BLANK).lower()
+    text = header.strip(written.BLANK).lower()
     found = UNIT.fullmatch(text)
     unit = "" if found is None else (found[3] if found[2] is None else found[2])
     return text if found is None else found[1], UNITS.get(unit, unit)
@@ -160,9 +109,7 @@ def named(header: str) -> tuple[str, str]:
 
 def number(cell: str) -> float | None:
     """Number in a cell, the sign of per cent left out; None where there is none."""
-    text = cell.removesuffix("%").strip().replace("\N{MINUS SIGN}", "-")
-    text = text if "." in text else text.replace(",", ".")
-    return float(text.lower().replace("d", "e")) if NUMBER.fullmatch(text) else None
+    return written.number(cell.removesuffix("%"))
 
 
 def check_names(sheet: Sheet) -> str:

@@ -138,6 +138,8 @@ def level(
             continue
         if result is None or result.status == "failed":
             return (), result.failure if result and result.failure else UNDONE, number
+        if quantity not in result.errors:  # a table has each quantity in rows of its own
+            return (), Failure(FailureKind.NO_ERROR, step=-1), number
         errors.append(result.errors[quantity][norm])
     return tuple(errors), None, 0
 

@@ -142,6 +142,11 @@ def _runs(asked: Asked) -> tuple[tuple[Any, ...], list[QuantityPlan[Any]]]:
     for key in asked.values:
         if key not in known:
             raise ValueError(f"{case.name} has no axis {key!r}{meant(key, known)}; it has {', '.join(known)}")
+    if any(not chosen for chosen in asked.values.values()):
+        empty = next(key for key, chosen in asked.values.items() if not chosen)
+        raise ValueError(f"{empty} has no value; give one or more, or leave it out")
+    if asked.replicates != 1 and not (case.quantities and refines(case.Run)):
+        raise ValueError(f"{case.name} has no refinement to repeat; leave replicates = {asked.replicates} out")
     usual = case.quick if asked.quick else case.axes
     values = {key: list(dict.fromkeys(asked.values.get(key) or usual.get(key) or ())) for key in known}
     values = {key: chosen for key, chosen in values.items() if chosen}

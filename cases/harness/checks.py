@@ -9,7 +9,7 @@ from mpm_verify.cases.judging.records import Outcome, worst
 from mpm_verify.solver.failure import Failure
 from mpm_verify.solver.state import Floats
 
-Way = Literal["relative", "absolute", "at least", "at most"]
+Way = Literal["relative", "absolute", "at_least", "at_most"]
 Curves = dict[str, dict[str, Floats]]
 
 
@@ -42,9 +42,9 @@ class Check:
         """Outcome: PASS, FAIL, or ERROR where the value is not a number."""
         if not isfinite(self.found):
             return Outcome.ERROR
-        if self.way == "at least":
+        if self.way == "at_least":
             return Outcome.PASS if self.found >= self.expected else Outcome.FAIL
-        if self.way == "at most":
+        if self.way == "at_most":
             return Outcome.PASS if self.found <= self.expected else Outcome.FAIL
         return Outcome.PASS if self.miss <= self.within else Outcome.FAIL
 

@@ -32,11 +32,12 @@ from mpm_verify.solver.source_hash import closure, source_hash
 
 def digest(run: Any, plugins: Mapping[str, str], more: str = "") -> str:
     """Digest of a run, 16 hex digits. `plugins`: package of each field that names one; `more`: what else counts."""
-    return _digest(run, tuple(plugins), sources(run, plugins) + more)
+    return _digest(run, repr(run), tuple(plugins), sources(run, plugins) + more)
 
 
 @cache
-def _digest(run: Any, plugins: tuple[str, ...], computed_by: str) -> str:
+def _digest(run: Any, written: str, plugins: tuple[str, ...], computed_by: str) -> str:
+    """Digest; `written` tells apart runs that are equal, as they differ in fields that are not compared."""
     parameters = asdict(run)
     for field in plugins:
         name, rest = split(parameters[field])

@@ -39,9 +39,12 @@ class Series:
 
     @property
     def halved(self) -> Run | None:
-        """The finest run with half the time step, if the study has it."""
-        half = replace(self.runs[-1], courant=self.runs[-1].courant / 2)
-        return half if half in self.times else None
+        """The finest run with half the time step, if the study has it; itself where there is no time step."""
+        finest = self.runs[-1]
+        if getattr(finest, "steady", False):
+            return finest
+        half = replace(finest, courant=finest.courant / 2)
+        return next((run for run in self.times if run == half), None)
 
 
 def refines(run: type[RunRecord]) -> bool:

@@ -47,6 +47,8 @@ def make(folder: Path) -> None:
 def case_of(folder: Path) -> str:
     """Case of the study that a folder holds. Raises StoreError where nothing says which."""
     path = folder / "study.json"
+    if folder.is_file():
+        raise StoreError(f"{folder} is a file; give the folder of a study, such as {folder.parent}")
     try:
         data = json.loads(path.read_bytes())
         case, found = (data.get("case"), data.get("format")) if isinstance(data, dict) else (None, FORMAT)

@@ -51,6 +51,7 @@ class RunRecord:
     """
 
     case: ClassVar[str]
+    given: ClassVar[bool] = False  # whether its numbers were given: no command runs another
 
     @property
     def digest(self) -> str:
@@ -235,9 +236,11 @@ def head(run: RunRecord) -> Head:
     Returns
     -------
     tuple of (str, value)
-        Names and values of all fields but those that a refinement varies (REFINED).
+        Names and values of all fields but those that a refinement varies (REFINED) and those that do not tell runs
+        apart (compare=False).
     """
-    return tuple((item.name, getattr(run, item.name)) for item in fields(run) if item.name not in REFINED)
+    told = (item.name for item in fields(run) if item.compare and item.name not in REFINED)
+    return tuple((name, getattr(run, name)) for name in told)
 
 
 def without(name: str, of: Head) -> Head:

@@ -11,7 +11,7 @@ from mpm_verify.cases.harness.build import Asked
 from mpm_verify.cases.judging.records import Expectation
 from mpm_verify.cases.mms.expectations import JUDGED_QUANTITY, expected
 from mpm_verify.cases.mms.run import AXES, NORMS, QUANTITIES, QUICK, Result, Run
-from mpm_verify.cases.mms.time_step import check_time_steps
+from mpm_verify.cases.mms.stability import check_time_steps
 from mpm_verify.mms.cells import fitting, ratio
 from mpm_verify.mms.energy import check_energy
 from mpm_verify.solver.plugins import (

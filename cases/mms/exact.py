@@ -10,7 +10,7 @@ from mpm_verify.mms.blind_spots import BlindSpot, SpotCode
 from mpm_verify.mms.manufacture import Manufactured, manufacture
 from mpm_verify.mms.printed import folder
 from mpm_verify.solver.cache_folder import kept
-from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS, create
+from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS, create, is_file
 
 Names = tuple[str, str]
 
@@ -30,8 +30,11 @@ def _now(solution: str, material: str) -> Names:
 
 
 def _named(solution: str, material: str, now: Names) -> str:
-    """Name of all that is derived: the specifications, with their parameters, and what they stand for."""
-    return " ".join((solution, material, *now))
+    """Name of all that is derived: the specifications, with their parameters, and what they stand for.
+
+    Empty where a user's file is among them: it may return something else when it is asked again.
+    """
+    return "" if is_file(solution) or is_file(material) else " ".join((solution, material, *now))
 
 
 @cache
@@ -42,7 +45,10 @@ def _manufactured(solution: str, material: str, now: Names) -> Manufactured:
 
 @cache
 def _audited(solution: str, material: str, now: Names) -> tuple[BlindSpot, ...]:
-    where = folder(_named(solution, material, now), "mpm_verify.mms.audit")
+    name = _named(solution, material, now)
+    if not name:
+        return _audit(solution, material)
+    where = folder(name, "mpm_verify.mms.audit")
     text = kept(where, "blind_spots", lambda: json.dumps([asdict(spot) for spot in _audit(solution, material)]))
     return tuple(BlindSpot(SpotCode(spot["code"]), spot["blind"], spot["numbers"]) for spot in json.loads(text))
 

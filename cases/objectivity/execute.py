@@ -85,5 +85,5 @@ def control_checks() -> list[Check]:
         wrong = name in available(NEGATIVE_CONTROLS)
         source = "a control has to be seen" if wrong else "a rate must not look like one"
         what = f"{name}: miss after {COARSE} steps"
-        checks.append(Check(kinematic.CONTROLS, what, miss, MISS, "at least" if wrong else "at most", source))
+        checks.append(Check(kinematic.CONTROLS, what, miss, MISS, "at_least" if wrong else "at_most", source))
     return checks

@@ -78,10 +78,10 @@ def figure2_checks(block: Block) -> list[Check]:
     drift = float(np.ptp((found["xx"] + found["yy"])[turn_only]))
     peak = (1 - block.nu / (1 - block.nu)) / 2
     return [
-        Check(FIGURE2, "largest distance from the closed form", away, 1e-6, "at most", CLOSED),
+        Check(FIGURE2, "largest distance from the closed form", away, 1e-6, "at_most", CLOSED),
         Check(FIGURE2, "shear stress at 45 degrees", float(found["xy"].max()), peak, "absolute", CLOSED, 1e-6),
-        Check(FIGURE2, "co-rotated shear stress", own, 1e-12, "at most", "zero in the frame of the block"),
-        Check(FIGURE2, "change of the trace in the turn", drift, 1e-12, "at most", "invariant of a rotation"),
+        Check(FIGURE2, "co-rotated shear stress", own, 1e-12, "at_most", "zero in the frame of the block"),
+        Check(FIGURE2, "change of the trace in the turn", drift, 1e-12, "at_most", "invariant of a rotation"),
     ]
 
 

@@ -79,7 +79,7 @@ def _card(record: Record, found: Finding) -> Card:
         headline,
         facts,
         words.sentence(verdicts.said(v.reason)),
-        commands.command(record.study, found),
+        commands.command(record.study, found, record.store.folder),
         grows,
         short(found),
         audited.short(record, plan.run.solution),

@@ -8,13 +8,14 @@ import pandas as pd
 
 from mpm_verify.cases.harness.checks import Check, Examination
 from mpm_verify.cases.harness.store import Store, StoreError
+from mpm_verify.reports import words
 from mpm_verify.reports.components.film import Film
 from mpm_verify.reports.components.page import Add, Image, adder, template
 from mpm_verify.reports.components.show import Table
 from mpm_verify.reports.sentences import failures
 from mpm_verify.reports.sentences.remarks import lead, parameters
 
-WAYS = {"relative": "± {} of it", "absolute": "± {}", "at least": "or more", "at most": "or less"}
+WAYS = {"relative": "± {} of it", "absolute": "± {}", "at_least": "or more", "at_most": "or less"}
 
 
 @dataclass(frozen=True)
@@ -81,7 +82,7 @@ def checks_table(caption: str, checks: Sequence[Check], group: bool = False) -> 
 
 def row(check: Check) -> tuple[str, ...]:
     """Cells of a check as text; a bound has no distance from it worth showing."""
-    bound = check.way.startswith("at")
+    bound = check.way in words.BOUNDS
     allowed = WAYS[check.way].format(f"{check.within:.3g}")
     miss = "" if bound else f"{check.miss:.2g}"
     return (

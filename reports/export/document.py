@@ -177,6 +177,7 @@ def document(record: Record, page: Path | None, more: Row) -> str:
 def verdict(record: Record, finding: Finding) -> Row:
     """Row of a judged quantity; `code`, `numbers`, `failed` and `wanted` are what `reason` says in words."""
     study, expectation, r = record.study, finding.plan.expectation, finding.verdict.reason
+    typed = commands.command(study, finding, record.store.folder)
     order = expectation.order if expectation else None
     row = {
         "expected": expectation.kind if expectation and order is None else order,
@@ -184,7 +185,7 @@ def verdict(record: Record, finding: Finding) -> Row:
         "code": str(r.code),
         "numbers": finite(r.numbers),
         "failed": [asdict(ended(end)) for end in r.failed],
-        "wanted": {**asdict(r.wanted), "command": commands.command(study, finding)} if r.wanted else None,
+        "wanted": {**asdict(r.wanted), "command": typed} if r.wanted else None,
         "reason": commands.reason(study, finding),
     }
     return joined(shown(record, finding), row)

@@ -8,6 +8,7 @@ from xml.etree import ElementTree
 from mpm_verify.cases.harness.checks import Check
 from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.cases.judging.records import Outcome
+from mpm_verify.reports import words
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences import commands, failures, stalls
 
@@ -47,7 +48,7 @@ def _verdict(suite: Any, record: Record, finding: Finding) -> None:
     names = [str(value) for key, value in record.columns(plan.run).items() if key != "ppc"]
     case = ElementTree.SubElement(
         suite, "testcase", classname=".".join([record.study.name, *names]),
-        name=f"{plan.quantity} {plan.norm}, {plan.run.ppc} per cell",
+        name=words.measured(plan, " ") + (f", {plan.run.ppc} per cell" if hasattr(plan.run, "ppc") else ""),
         time=f"{sum(result.wall_s for result in finding.results if result):.3f}",
     )  # fmt: skip
     said = commands.reason(record.study, finding)
@@ -63,7 +64,7 @@ def _check(suite: Any, study: str, check: Check) -> None:
     case = ElementTree.SubElement(suite, "testcase", classname=f"{study}.{check.group}", name=check.name, time="0")
     if check.outcome is not Outcome.PASS:
         kind = "error" if check.outcome is Outcome.ERROR else "failure"
-        message = f"{check.found:.8g}, expected {check.way} {check.expected:.8g}, {check.within:.3g}"
+        message = f"{check.found:.8g}, expected {words.way(check.way)} {check.expected:.8g}, {check.within:.3g}"
         if check.failure:
             message = failures.failure(check.failure)
         ElementTree.SubElement(case, kind, type=str(check.outcome), message=message)

@@ -16,7 +16,7 @@ def markdown(record: Record) -> str:
         lines += ["| | refinement | quantity | order | expected | reason |", "| --- | --- | --- | --- | --- | --- |"]
         for f in judged:
             plan, v = f.plan, f.verdict
-            cells = (f"{MARKS[v.outcome]} {v.outcome}", record.label(plan.run), f"{plan.quantity} in {plan.norm}",
+            cells = (f"{MARKS[v.outcome]} {v.outcome}", record.label(plan.run), words.measured(plan),
                      words.order(v.observed), verdicts.registered(plan.expectation),
                      commands.reason(study, f))  # fmt: skip
             lines.append(f"| {' | '.join(map(escaped, cells))} |")

@@ -48,10 +48,12 @@ def cell_axis(axes: Axes, series: Sequence[Series]) -> None:
     """Draw a logarithmic axis of cell sizes with a tick 1/N at each that was asked for."""
     cells = sorted({run.cells for s in series for run in s.runs}, reverse=True)
     axes.set_xscale("log")
-    axes.set_xticks([1 / n for n in cells], [words.cell_size(n) for n in cells])
+    given = any(s.first.given for s in series)
+    plain = any(getattr(s.first, "by", "cells") == "h" for s in series)
+    axes.set_xticks([1 / n for n in cells], [f"{1 / n:.4g}" if plain else words.size(1 / n) for n in cells])
     axes.xaxis.set_minor_locator(NullLocator())
     axes.set_xlim(0.75 / cells[0], 1.33 / cells[-1])
-    axes.set_xlabel("cell size (width of the body = 1)")
+    axes.set_xlabel("cell size" if given else "cell size (width of the body = 1)")
 
 
 def methods(record: Record) -> list[str]:

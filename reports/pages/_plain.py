@@ -20,8 +20,8 @@ from mpm_verify.reports.sentences import commands, failures, verdicts
 from mpm_verify.reports.tables import plain
 
 
-def page(record: Record, vtk: bool = False, more: Sequence[Section] = ()) -> Path:
-    """Write the page of a study, its figures and tables; its path. `more` sections come before the runs.
+def page(record: Record, vtk: bool = False, more: Sequence[Section] = (), last: Section | None = None) -> Path:
+    """Write the page of a study, its figures and tables; its path. `more` sections come before the runs, or `last`.
 
     Raises StoreError.
     """
@@ -32,7 +32,7 @@ def page(record: Record, vtk: bool = False, more: Sequence[Section] = ()) -> Pat
         first.environment if first else {},
     )  # fmt: skip
     made = render(
-        record.store.folder, examination, lambda _, add: [*sections(record, add), *more, runs(record)],
+        record.store.folder, examination, lambda _, add: [*sections(record, add), *more, last or runs(record)],
         outcome=str(found.outcome), said=summary(record) if study.plans else "",
     )  # fmt: skip
     plain.write(record, record.store.folder / "tables")
@@ -43,9 +43,12 @@ def sections(record: Record, add: Add) -> list[Section]:
     """Verdicts with their figure, errors and orders, and checks, as far as there are some."""
     found = []
     if record.study.plans:
+        named = {(f.plan.quantity, f.plan.norm): words.measured(f.plan, ", ") for f in record.findings}
+        orders = any(plan.expectation and plan.expectation.order is not None for plan in record.study.plans)
+        line = "; the dashed line has the expected order" if orders else ""
         images = [(add(f"error_{q}_{n}", errors(record, q, n), f"Error of {q} against cell size."),
-                   f"Error of the {q} ({n}) against cell size; the dashed line has the expected order.")
-                  for q, n in dict.fromkeys((f.plan.quantity, f.plan.norm) for f in record.findings)]  # fmt: skip
+                   f"Error of the {said} against cell size{line}.".replace("of the error ", ""))
+                  for (q, n), said in named.items()]  # fmt: skip
         found.append(Section("verdicts", "Verdicts", record.study.words, images, [verdict_table(record)]))
         found.append(Section("errors", "Errors and orders", tables=[levels(record, f) for f in record.findings]))
     if record.analysis.checks:
@@ -60,7 +63,7 @@ def verdict_table(record: Record) -> Table:
     for f in record.findings:
         plan, v = f.plan, f.verdict
         said = str(v.outcome) if plan.judged else "shown"
-        rows.append((record.label(plan.run), f"{plan.quantity}, {plan.norm}", said, words.order(v.observed),
+        rows.append((record.label(plan.run), words.measured(plan, ", "), said, words.order(v.observed),
                      words.interval(v.interval), verdicts.registered(plan.expectation),
                      commands.reason(record.study, f)))  # fmt: skip
     return Table("Verdicts", head, tuple(rows), texts=("quantity", "verdict", "expected", "reason"))
@@ -69,11 +72,11 @@ def verdict_table(record: Record) -> Table:
 def levels(record: Record, found: Finding) -> Table:
     """Table of the levels of a finding, a row for each cell size."""
     rows = [
-        (str(row["cells"]), words.sci(row["error"]), words.order(row["order"]), str(row["ended"]))
-        for row in plain.levels(record, found)
+        (record.named(level.h), words.sci(row["error"]), words.order(row["order"]), str(row["ended"]))
+        for level, row in zip(found.levels, plain.levels(record, found), strict=True)
     ]
-    title = f"{record.label(found.plan.run)}: {found.plan.quantity}, {found.plan.norm}"
-    return Table(title, ("cells", "error", "order", "failed"), tuple(rows), texts=("failed",))
+    title = f"{record.label(found.plan.run)}: {words.measured(found.plan, ', ')}"
+    return Table(title, (record.by, "error", "order", "failed"), tuple(rows), texts=("failed",))
 
 
 def runs(record: Record) -> Section:
@@ -94,17 +97,20 @@ def runs(record: Record) -> Section:
 def errors(record: Record, quantity: str, norm: str) -> Figure:
     """Figure of the error of every refinement against cell size, both axes logarithmic."""
     methods = list(dict.fromkeys(getattr(s.first, "method", "") for s in record.series))
+    heads = {f.plan.head for f in record.findings if (f.plan.quantity, f.plan.norm) == (quantity, norm)}
+    drawn = [s for s in record.drawn if s.head in heads]
     with rc_context(style.RC):
         figure = Figure(figsize=style.PANEL, layout="constrained")
         axes = figure.subplots()
-        for s in record.drawn:
+        for s in drawn:
             points = [(1 / run.cells, error) for run, error in record.errors(s, quantity, norm) if error > 0]
-            look = style.look(methods, getattr(s.first, "method", ""), getattr(s.first, "ppc", 4))
+            look = style.look(methods, getattr(s.first, "method", ""), getattr(s.first, "ppc", 9))
             axes.loglog(*zip(*points, strict=True), label=record.label(s.first), **look.plot) if points else None
         _expected(axes, record, quantity, norm)
-        cell_axis(axes, record.drawn)
-        axes.set_ylabel(f"error of the {quantity}, {norm}")
-        axes.legend(frameon=False)
+        cell_axis(axes, drawn)
+        axes.set_ylabel("error" if quantity == norm else f"error of the {quantity}, {norm}".removesuffix(", error"))
+        if axes.lines:
+            axes.legend(frameon=False)
     return figure
 
 

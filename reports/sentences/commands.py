@@ -4,32 +4,49 @@ import os
 import shlex
 from collections.abc import Sequence
 from dataclasses import fields
+from pathlib import Path
 from typing import Any
 
 from mpm_verify.cases.harness.study import QuantityPlan, Study, head
 from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.cases.judging.records import Action, Wanted
-from mpm_verify.reports.sentences import verdicts
+from mpm_verify.reports.sentences import any_code, verdicts
 from mpm_verify.solver.failure import FailureKind
 from mpm_verify.solver.plugins import is_file, split
 
 
 def reason(study: Study[Any], found: Finding) -> str:
     """Reason of a verdict, and the option that asks for the run that would decide where nothing does."""
+    if found.plan.run.given:
+        return ": ".join(filter(None, [verdicts.said(found.verdict.reason), decides(study, found)]))
     return verdicts.reason(found.verdict.reason, courants(study, found.plan))
 
 
-def command(study: Study[Any], found: Finding) -> str:
-    """Command of the study that would decide; empty where no run would, or none can be asked for."""
+def command(study: Study[Any], found: Finding, folder: Path | None = None) -> str:
+    """Command of the study that would decide; empty where no run would, or none can be asked for.
+
+    It goes on in the `folder` of the study where that is not the usual one.
+    """
     r = found.verdict.reason
-    if r.wanted is None:
+    if r.wanted is None or found.plan.run.given:
         return ""
     if r.wanted.action is Action.FINISH:
         return study.command if r.failed[0].failure.kind is FailureKind.NOT_RUN else ""
     option = verdicts.options(r.wanted, courants(study, found.plan))
     if not option:
         return ""
-    return shlex.join(replaced(typed(study, found.plan, r.wanted), *option))
+    words = replaced(typed(study, found.plan, r.wanted), *option)
+    if folder is not None and folder.absolute() != Path("results", study.name).absolute():
+        words += ["--out", os.path.relpath(folder)]
+    return shlex.join(words)
+
+
+def decides(study: Study[Any], found: Finding, folder: Path | None = None) -> str:
+    """Command that would decide; of numbers that were given, what to change in their table."""
+    wanted, run = found.verdict.reason.wanted, found.plan.run
+    if run.given and wanted:
+        return any_code.advice(wanted, run.by, [level.h for level in found.levels], run.exact)
+    return command(study, found, folder)
 
 
 def courants(study: Study[Any], plan: QuantityPlan[Any]) -> tuple[float, ...]:

@@ -16,6 +16,7 @@ CAUSES = {
     FailureKind.TIME_LIMIT: "the solver took longer than it may",
     FailureKind.SOLVER_ERROR: "the solver ended with an error",
     FailureKind.NOT_RUN: "not run yet",
+    FailureKind.OSCILLATES: "the values go to and fro",
     FailureKind.NO_ERROR: "no error",
 }
 WIDTHS = {1.0: "a cell", 2.0: "two cells"}
@@ -44,12 +45,7 @@ def failure(failure: Failure) -> str:
     when = f" at step {failure.step}" if failure.step >= 0 else ""
     where = f", particle {failure.particle}" if failure.particle >= 0 else ""
     where += f" in cell {failure.cell}" if failure.cell else ""
-    return f"{cause(failure)}{advice(failure)}{when}{where}"
-
-
-def advice(failure: Failure) -> str:
-    """Advice on what to type to have such a run of `verify mms` all the same; empty where nothing helps."""
-    return " (--force runs it all the same)" if failure.kind is FailureKind.UNSTABLE_STEP else ""
+    return f"{cause(failure)}{when}{where}"
 
 
 def replicate(number: int) -> str:

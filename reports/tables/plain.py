@@ -47,13 +47,13 @@ def levels(record: Record, found: Finding) -> Rows:
     rows: Rows = []
     last: tuple[float, float] | None = None
     for level in found.levels:
-        cells = round(1 / level.h)
+        size = {record.by: record.size(level.h)}
         if level.ended:
-            rows.append({"cells": cells, "error": None, "order": None, "ended": failures.failure(level.ended.failure)})
+            rows.append({**size, "error": None, "order": None, "ended": failures.failure(level.ended.failure)})
             continue
         error = middle(level.errors)
         order = local([last, (level.h, error)])[0] if last else None
-        rows.append({"cells": cells, "error": error, "order": order, "ended": ""})
+        rows.append({**size, "error": error, "order": order, "ended": ""})
         last = (level.h, error)
     return rows
 

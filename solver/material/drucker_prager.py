@@ -137,6 +137,11 @@ class DruckerPrager(RateMaterial, Elastic):
         return self.phi
 
     @property
+    def fails_as_mohr_coulomb(self) -> bool:
+        """Whether it fails and flows as Mohr-Coulomb in plane strain."""
+        return self.cone == "plane_strain"
+
+    @property
     def cohesion(self) -> float:
         """Cohesion c, in the unit of E."""
         return self.c

@@ -155,6 +155,11 @@ class MohrCoulomb(RateMaterial, Elastic):
         return self.phi
 
     @property
+    def fails_as_mohr_coulomb(self) -> bool:
+        """Whether it fails and flows as Mohr-Coulomb in plane strain."""
+        return True
+
+    @property
     def cohesion(self) -> float:
         """Cohesion c, in the unit of E."""
         return self.c

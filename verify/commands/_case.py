@@ -34,7 +34,7 @@ def add(app: typer.Typer, case: str) -> None:
     file = Path(case) if is_file(case) else path(CASES, case)
     command.__doc__ = (ast.get_docstring(ast.parse(file.read_text())) or "").partition("\n")[0]
     own = {"replicates": (Replicates, 1), "quick": (Quick, False)}
-    study_command(app, typed, module.Run, command, getattr(module, "AXES", {}), own, leave_out=("offset",))
+    study_command(app, typed, module.Run, command, getattr(module, "AXES", {}), own)
 
 
 def records(case: str) -> Any:

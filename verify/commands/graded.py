@@ -52,7 +52,7 @@ def graded(
             listed(method) or usual.methods,
             listed(solution) or usual.solutions,
             integers(cells, "--cells"),
-            integers(ppc, "--ppc"),
+            integers(ppc, "--ppc", "4,9"),
             contrast,
             power,
         )

@@ -34,7 +34,7 @@ def methods(
         name = "-".join(["methods", *asked, *(["quick"] if quick else [])])
         name += f"-ppc-{ppc.replace(',', '-')}" if ppc != "4" else ""
         levels = QUICK if quick else LEVELS
-        study = build_methods(asked or every_method(), levels, integers(ppc, "--ppc"), command(), name)
+        study = build_methods(asked or every_method(), levels, integers(ppc, "--ppc", "4,9"), command(), name)
     return conduct(study, Settings(named(study, out), quick=quick, show=show_overview, **more))
 
 

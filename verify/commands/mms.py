@@ -37,4 +37,4 @@ def mms(asked: dict[str, list[str]], replicates: int, quick: bool, out: Path | N
 def add(app: typer.Typer) -> None:
     """Add the command, with an option for each field of a run."""
     own = {"replicates": (Replicates, 1), "quick": (Quick, False)}
-    study_command(app, "mms", Run, mms, AXES, own, leave_out=("offset",))
+    study_command(app, "mms", Run, mms, AXES, own)

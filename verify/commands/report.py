@@ -1,5 +1,6 @@
 """`verify report DIR`: make the page of a stored study again; runs nothing."""
 
+from inspect import signature
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -33,11 +34,16 @@ def report(
 
 def of(field: str, record: "Record") -> tuple[int, int]:
     """Cells and particles per cell of a run of the study. Raises ValueError for one that it has not."""
-    chosen = integers(field, "--field")
+    from mpm_verify.verify.run import of_case
+
+    module = of_case("reports.pages", record)
+    if module is None or "field" not in signature(module.page).parameters:
+        raise ValueError(f"--field: the case {record.study.case} has no error field; leave it out")
+    chosen = integers(field, "--field", "64,4")
     if len(chosen) != 2 or min(chosen) < 1:
         raise ValueError(f"--field {field!r} cannot be read; write cells,particles per cell, such as 64,4")
     runs = record.study.runs
-    there = sorted({(run.cells, run.ppc) for run in runs if hasattr(run, "cells")})
+    there = sorted({(run.cells, run.ppc) for run in runs if hasattr(run, "cells") and hasattr(run, "ppc")})
     if chosen not in there:
         known = "; ".join(f"{cells},{ppc}" for cells, ppc in there)
         raise ValueError(f"--field {field}: the study has no such run; choose from {known or 'none'}")

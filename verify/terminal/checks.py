@@ -5,6 +5,7 @@ from math import isfinite, nan
 from pathlib import Path
 
 from mpm_verify.cases.harness.checks import Check
+from mpm_verify.reports import words
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences import failures
 
@@ -44,9 +45,11 @@ def show(record: Record, page: Path | None, lead: str = "") -> None:
 def sentence(check: Check) -> str:
     """Sentence with what was found, and what it is held against."""
     within = f" within {check.within:.3g}" if check.within else ""
-    way = f"{check.way} " if check.way.startswith("at") else ""
+    way = f"{words.way(check.way)} " if check.way in words.BOUNDS else ""
     relative = " of it" if check.way == "relative" else ""
     name = failures.check(check.name, check.failure)
+    if not isfinite(check.found):
+        return f"{name}: there is no number to hold against {check.expected:.8g}"
     return f"{name} is {check.found:.8g}, expected {way}{check.expected:.8g}{within}{relative} ({check.source})"
 
 
@@ -57,8 +60,8 @@ def closest(checks: Sequence[Check]) -> str:
     if not bounded:
         return ""
     most = max(bounded, key=lambda check: fractions[check])
-    if most.way.startswith("at"):
-        return f"{most.found:.2g}, {most.way} {most.expected:.2g}: {most.name}"
+    if most.way in words.BOUNDS:
+        return f"{most.found:.2g}, {words.way(most.way)} {most.expected:.2g}: {most.name}"
     return f"{most.miss:.2g} of {most.within:.2g}: {most.name}"
 
 
@@ -66,5 +69,5 @@ def used(check: Check) -> float:
     """Fraction of what the check is allowed that it uses, above 1 where it fails; not a number where there is none."""
     if check.within:
         return check.miss / check.within
-    over, under = (check.found, check.expected) if check.way == "at most" else (check.expected, check.found)
-    return over / under if check.way.startswith("at") and min(over, under) > 0 else nan
+    over, under = (check.found, check.expected) if check.way == "at_most" else (check.expected, check.found)
+    return over / under if check.way in words.BOUNDS and min(over, under) > 0 else nan

@@ -13,6 +13,7 @@ from mpm_verify.cases.harness.axes import middle
 from mpm_verify.cases.harness.study import QuantityPlan
 from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.cases.judging.stall import Stall
+from mpm_verify.reports import words
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences import commands, stalls, verdicts
 from mpm_verify.solver.plugins import label
@@ -36,10 +37,12 @@ def show(record: Record, page: Path | None, console: Console | None = None) -> N
     if not out.is_terminal:
         out.width = max(out.width, 100)
     out.print(f"\n[bold]{study.title}[/bold]")
-    shown = [f for f in found if f.plan.judged or (f.plan.quantity, f.plan.norm) == ALWAYS]
+    shown = [f for f in found if f.plan.judged or f.plan.run.given or (f.plan.quantity, f.plan.norm) == ALWAYS]
     out.print(errors_table(record, shown))
-    if most := max((len(level.errors) for f in found for level in f.levels), default=1) - 1:
-        out.print(f"errors are geometric means of up to {most + 1} runs, each with other positions of the particles")
+    if (most := max((len(level.errors) for f in found for level in f.levels), default=1) - 1) > 0:
+        given = any(f.plan.run.given for f in found)
+        how = "" if given else ", each with other positions of the particles"
+        out.print(f"errors are geometric means of up to {most + 1} runs{how}")
     for finding in found:
         if finding.plan.judged:
             verdict(out, record, finding)
@@ -62,15 +65,16 @@ def errors_table(record: Record, found: Sequence[Finding]) -> Table:
     """Table of error, local order and crossings at each cell count; a failed run by its reason."""
     table = Table(box=None, pad_edge=False, header_style="dim")
     names = {"ppc": "per cell"} | {"quantity": "quantity", "cells": "cells"}
-    heads = [*columns(record, found[0].plan), "quantity", "cells"] if found else ["quantity", "cells"]
+    heads = [*columns(record, found[0].plan), "quantity", record.by] if found else ["quantity", "cells"]
     for name in heads:
-        table.add_column(names.get(name, name), justify="right" if name in ("ppc", "cells") else "left")
-    for name in ("error", "order", "crossings"):
+        table.add_column(names.get(name, name), justify="right" if name in ("ppc", "cells", "h") else "left")
+    given = any(finding.plan.run.given for finding in found)  # nothing moves through a grid of ours
+    for name in ("error", "order", *(() if given else ("crossings",))):
         table.add_column(name, justify="right")
     table.add_column("")
     for finding in found:
-        for row in rows(record, finding):
-            table.add_row(*row)
+        for *cells, faces, why in rows(record, finding):
+            table.add_row(*cells, *(() if given else (faces,)), why)
     return table
 
 
@@ -83,10 +87,10 @@ def columns(record: Record, plan: QuantityPlan[Any]) -> dict[str, str]:
 def rows(record: Record, finding: Finding) -> Iterator[tuple[str, ...]]:
     """Rows, one for each level; names once a block."""
     plan, orders = finding.plan, iter(finding.verdict.local_orders)
-    first: tuple[str, ...] = (*columns(record, plan).values(), f"{plan.quantity} {plan.norm}")
+    first: tuple[str, ...] = (*columns(record, plan).values(), words.measured(plan, " "))
     earlier = False
     for level, passed in zip_longest(finding.levels, finding.crossings):
-        cells, faces = f"{1 / level.h:.0f}", "" if passed is None else f"{passed:.1f}"
+        cells, faces = record.named(level.h), "" if passed is None else f"{passed:.1f}"
         if level.ended:
             yield (*first, cells, "-", "", faces, verdicts.ended(level.ended))
         else:
@@ -104,8 +108,8 @@ def order(local: float | None) -> str:
 def verdict(out: Console, record: Record, finding: Finding) -> None:
     """Print the verdict in words, and the command that would decide on a line of its own, to be copied whole."""
     out.print(sentence(record, finding))
-    if command := commands.command(record.study, finding):
-        out.print(f"  this would decide: {command}", soft_wrap=True, markup=False)
+    if deciding := commands.decides(record.study, finding, record.store.folder):
+        out.print(f"  this would decide: {deciding}", soft_wrap=True, markup=False)
 
 
 def sentence(record: Record, finding: Finding) -> Text:
@@ -122,7 +126,7 @@ def named(record: Record, plan: QuantityPlan[Any]) -> str:
     names = columns(record, plan)
     method, solution, ppc = (names.pop(key, "") for key in ("method", "solution", "ppc"))
     rest = [f"{name} {value}" for name, value in names.items()] + [f"{ppc} per cell"] * bool(ppc)
-    return ", ".join([f"{method}{f' on {solution}' if solution else ''}", *rest, f"{plan.quantity} in {plan.norm}"])
+    return ", ".join([f"{method}{f' on {solution}' if solution else ''}", *rest, words.measured(plan)])
 
 
 def stall(record: Record, finding: Finding, found: Stall) -> Text:
