@@ -152,7 +152,11 @@ def spelled(value: Any) -> str:
 def values(run: type[Any], asked: Mapping[str, list[str]]) -> dict[str, list[Any]]:
     """Values of axes from what was typed. Raises ValueError with one line that says what to type instead."""
     hints = get_type_hints(run)
-    return {key: [one for text in texts for one in parsed(key, hints[key], text)] for key, texts in asked.items()}
+    whole = {item.name for item in fields(run) if item.metadata.get("whole")}
+    return {
+        key: list(texts) if key in whole else [one for text in texts for one in parsed(key, hints[key], text)]
+        for key, texts in asked.items()
+    }
 
 
 def parsed(key: str, kind: Any, text: str) -> list[Any]:

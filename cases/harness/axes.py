@@ -159,4 +159,6 @@ def middle(errors: Sequence[float]) -> float:
 
 def cell_crossings(result: Result | None) -> float | None:
     """Mean number of cell faces that a particle crossed in the whole run; None where the run is not done."""
-    return result.crossings / result.particles if result and result.particles else None
+    if result is None or result.crossings is None or not result.particles:
+        return None
+    return float(result.crossings / result.particles)

@@ -121,11 +121,11 @@ class Case:
         """Function (study, results, store) -> checks of what is stored; None of a case without checks."""
         return getattr(self.module, "examine", None)
 
-    @property
-    def execute(self) -> Callable[..., Any]:
-        """Function (run, tick) -> (Result, arrays): a run to its end, or to where it fails."""
-        module = self.module if is_file(self.name) else import_module(f"{CASES}.{self.name}.execute")
-        return module.execute  # type: ignore[no-any-return]
+    def execute(self, run: Any, tick: Callable[[float], None] = lambda fraction: None) -> tuple[Any, Any]:
+        """Result and arrays of a run, to its end or to where it fails."""
+        module = self.module if is_file(self.name) else import_module(run.computed_by)
+        result, arrays = module.execute(run, tick)
+        return result, arrays
 
 
 def case_named(name: str) -> Case:

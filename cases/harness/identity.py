@@ -8,7 +8,7 @@ both are asked for anew in each process, so that a helper, a data file, the envi
 import hashlib
 import json
 from collections.abc import Mapping
-from dataclasses import asdict
+from dataclasses import asdict, fields
 from functools import cache
 from importlib import import_module
 from pathlib import Path
@@ -38,7 +38,8 @@ def digest(run: Any, plugins: Mapping[str, str], more: str = "") -> str:
 @cache
 def _digest(run: Any, written: str, plugins: tuple[str, ...], computed_by: str) -> str:
     """Digest; `written` tells apart runs that are equal, as they differ in fields that are not compared."""
-    parameters = asdict(run)
+    left_out = {item.name for item in fields(run) if not item.metadata.get("named", True)}
+    parameters = {key: value for key, value in asdict(run).items() if key not in left_out}
     for field in plugins:
         name, rest = split(parameters[field])
         if is_file(name):  # wherever it is
@@ -49,7 +50,7 @@ def _digest(run: Any, written: str, plugins: tuple[str, ...], computed_by: str) 
 def sources(run: Any, plugins: Mapping[str, str]) -> str:
     """Source hash of all that computes the run."""
     own = is_file(run.case)
-    parts = [derived(Path(run.case)) if own else source_hash(f"mpm_verify.cases.{run.case}.execute")]
+    parts = [derived(Path(run.case)) if own else source_hash(run.computed_by)]
     parts += [identity(package, getattr(run, field)) for field, package in plugins.items()]
     return hashlib.sha256(" ".join(parts).encode()).hexdigest()
 

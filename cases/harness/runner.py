@@ -40,7 +40,12 @@ def cost(run: Run) -> float:
 def pending(study: Study, store: Store) -> list[Run]:
     """The runs still to be done, the longest first, so that none is left alone at the end."""
     once = {run.digest: run for run in study.runs}
-    return sorted((run for digest, run in once.items() if store.get(digest) is None), key=cost, reverse=True)
+    return sorted((run for digest, run in once.items() if to_be_done(run, store.get(digest))), key=cost, reverse=True)
+
+
+def to_be_done(run: Run, result: Result) -> bool:
+    """Whether a run has no Result yet, or a failed one that counts for nothing."""
+    return result is None or (run.again and result.status == "failed")
 
 
 def perform(run: Run, digest: str, folder: Path, threads: int) -> Result:

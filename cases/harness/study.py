@@ -20,7 +20,9 @@ Arrays = dict[str, Any]  # arrays of a run by name
 Head = tuple[tuple[str, Any], ...]  # names and values of all other fields of a Run: what a refinement is of
 
 
-def axis(default: Any, text: str, plugins: str = "", choices: tuple[str, ...] = ()) -> Any:
+def axis(
+    default: Any, text: str, plugins: str = "", choices: tuple[str, ...] = (), whole: bool = False, named: bool = True
+) -> Any:
     """Declare a field of a Run, which can be an axis of a study.
 
     Parameters
@@ -33,13 +35,19 @@ def axis(default: Any, text: str, plugins: str = "", choices: tuple[str, ...] = 
         Package whose plug-ins the field names; empty if it names none.
     choices
         Words that the field may be, which complete its option.
+    whole
+        Whether commas do not separate values of it on the command line.
+    named
+        Whether it is part of the name of a Result.
 
     Returns
     -------
     dataclasses.Field
         Default and metadata, from which options, TOML keys and documentation are made.
     """
-    return field(default=default, metadata={"help": text, "plugins": plugins, "choices": choices})
+    return field(
+        default=default, metadata={"help": text, "plugins": plugins, "choices": choices, "whole": whole, "named": named}
+    )
 
 
 @dataclass(frozen=True)
@@ -54,14 +62,28 @@ class RunRecord:
     given: ClassVar[bool] = False  # whether its numbers were given: no command runs another
 
     @property
+    def computed_by(self) -> str:
+        """Module whose `execute` runs it, and whose import closure is part of its name."""
+        return f"mpm_verify.cases.{self.case}.execute"
+
+    @property
+    def plugins(self) -> dict[str, str]:
+        """Packages of the fields that name a plug-in which computes."""
+        return {item.name: item.metadata["plugins"] for item in fields(self) if item.metadata.get("plugins")}
+
+    @property
+    def again(self) -> bool:
+        """Whether a stored Result that failed is run again: what failed may have been mended outside."""
+        return False
+
+    @property
     def digest(self) -> str:
         """Name of the Result: hash of the parameters and of all that computes the run, 16 hex digits."""
         return self.named()
 
     def named(self, more: str = "") -> str:
         """Digest of the run; `more` is what else it depends on."""
-        packages = {item.name: item.metadata["plugins"] for item in fields(self) if item.metadata.get("plugins")}
-        return digest(self, packages, more)
+        return digest(self, self.plugins, more)
 
     @property
     def cost(self) -> float:
@@ -108,7 +130,7 @@ class ResultRecord(Generic[R]):
     scale, floor
         By quantity: rms of the exact quantity, and its round-off floor.
     crossings
-        Number of cell faces that particles crossed, summed over particles and steps.
+        Number of cell faces that particles crossed, summed over particles and steps; None where nobody counted.
     gap
         Distance of corners of domains that should coincide, in particle spacings; None where domains have no corners.
     failure
@@ -135,7 +157,7 @@ class ResultRecord(Generic[R]):
     values: dict[str, float] = field(default_factory=dict)
     scale: dict[str, float] = field(default_factory=dict)
     floor: dict[str, float] = field(default_factory=dict)
-    crossings: int = 0
+    crossings: int | None = 0
     gap: float | None = None
     failure: Failure | None = None
     environment: dict[str, str] = field(default_factory=dict)

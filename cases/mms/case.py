@@ -3,6 +3,7 @@
 The contract of a case is told in cases/harness/contract.py.
 """
 
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
@@ -10,6 +11,7 @@ from typing import Any
 from mpm_verify.cases.harness.build import Asked
 from mpm_verify.cases.judging.records import Expectation
 from mpm_verify.cases.mms.expectations import JUDGED_QUANTITY, expected
+from mpm_verify.cases.mms.external.command import program, version
 from mpm_verify.cases.mms.run import AXES, NORMS, QUANTITIES, QUICK, Result, Run
 from mpm_verify.cases.mms.stability import check_time_steps
 from mpm_verify.mms.cells import fitting, ratio
@@ -30,12 +32,17 @@ from mpm_verify.solver.stress_update import check_stress_update
 __all__ = ["AXES", "JUDGED", "NORMS", "QUANTITIES", "QUICK", "Result", "Run"]
 
 JUDGED = (JUDGED_QUANTITY,)
+OURS = ("transfer", "stress", "layout", "staggered", "offset")  # fields that a solver of somebody else does not take
+THEIRS = {"cells": (8, 16, 32, 64), "ppc": (4,)}  # values that nobody asks for of such a solver
 SCHEME = {"transfer": "flip", "stress": "usl", "layout": "uniform"}  # the one that expectations are registered for
 
 
 def title(runs: Sequence[Run]) -> str:
     """Title, such as `CPDI and MPM against the manufactured solution axis_aligned`."""
     methods, solutions = (tuple(dict.fromkeys(getattr(run, key) for run in runs)) for key in ("method", "solution"))
+    if any(run.solver for run in runs):
+        programs = dict.fromkeys(program(run.solver) for run in runs)
+        return f"{' and '.join(programs)} against the manufactured solution {', '.join(map(label, solutions))}"
     named = " and ".join(m.upper() for m in methods) if len(methods) < 4 else f"{len(methods)} methods"
     several = "solutions" if len(solutions) > 1 else "solution"
     return f"{named} against the manufactured {several} {', '.join(map(label, solutions))}"
@@ -47,13 +54,19 @@ def canonical(values: dict[str, Any]) -> dict[str, Any]:
     values["material"] = canonical_name(MATERIALS, values.get("material") or create(SOLUTIONS, solution).material)
     values["transfer"] = canonical_name(TRANSFERS, values.get("transfer", Run.transfer))
     values["layout"] = canonical_name(LAYOUTS, values.get("layout", Run.layout))
-    values["method"] = canonical_name(METHODS, values.get("method", Run.method))
+    if values.get("solver"):
+        values["solver_version"] = values.get("solver_version") or version(values["solver"])
+    if values.get("solver") and "method" not in values:
+        values["method"] = re.sub(r"\W+", "_", program(values["solver"]).removesuffix(".py"))
+    else:
+        values["method"] = canonical_name(METHODS, values.get("method", Run.method))
     check_stress_update(values.get("stress", Run.stress))
     return values
 
 
 def check(runs: Sequence[Run]) -> None:
     """Raise ValueError with one line for a solution, material or layout that cannot be run."""
+    check_theirs([run for run in runs if run.solver])
     cells: dict[tuple[str, str, str], set[int]] = {}
     for run in runs:
         cells.setdefault((run.solution, run.material, run.layout), set()).add(run.cells)
@@ -70,9 +83,19 @@ def check(runs: Sequence[Run]) -> None:
             check_time_steps(mine, sorted({run.courant for run in mine}))
 
 
+def check_theirs(runs: Sequence[Run]) -> None:
+    """Raise ValueError for what a solver of somebody else is not asked for."""
+    for name in OURS:
+        if any(getattr(run, name) != getattr(Run, name) for run in runs):
+            option = name.replace("_", "-")
+            raise ValueError(f"--{option} is for the reference solver; leave it out beside --solver")
+
+
 def parts(asked: Asked) -> list[Asked]:
     """Parts of the request, with cells that fill the body of each solution, where no cells were asked for."""
     solutions = asked.values.get("solution", (Run.solution,))
+    if any(asked.values.get("solver", ())) and not asked.quick:
+        asked = replace(asked, values={**THEIRS, **asked.values})
     if "cells" in asked.values or not any(is_file(one) for one in solutions):
         return [asked]
     usual = (QUICK if asked.quick else AXES)["cells"]
@@ -90,6 +113,8 @@ def multiple(run: Run) -> int:
 
 def expectation(run: Run, quantity: str, norm: str) -> Expectation | None:
     """Registered expectation, of the usual scheme alone; recorded errors hold for the usual time step and start."""
+    if run.order:
+        return Expectation(run.order, source="given with --order") if (quantity, norm) in JUDGED else None
     if any(getattr(run, name) != usual for name, usual in SCHEME.items()):
         return None
     usual = run.courant == Run.courant and run.staggered

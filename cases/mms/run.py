@@ -44,6 +44,13 @@ class Run(RunRecord):
     force: bool = axis(False, "Run time steps above the stability limit too.")
     offset: tuple[float, float] = axis((0.0, 0.0), "Shift of the particles, in fractions of their spacing.")
     layout: str = axis("uniform", "How particles are spread.", LAYOUTS)
+    solver: str = axis(
+        "", "Solver of your own: a command such as './mine {case} {out}', see docs/own-solver.md.", whole=True
+    )
+    solver_version: str = axis("", "Version of that solver; usual is a hash of the files that its command names.")
+    order: float = axis(0.0, "Order expected of u; 0: what is registered of the method.", named=False)
+    time_limit: float = axis(600.0, "Seconds that a run of a solver of your own may take.", named=False)
+    memory_limit: float = axis(0.0, "Address space that it may have, MB; 0: any.", named=False)
     case: ClassVar[str] = "mms"
 
     def __post_init__(self) -> None:
@@ -55,6 +62,25 @@ class Run(RunRecord):
             raise ValueError(f"{self.ppc} particles per cell is not a square number; choose from 1, 4, 9, 16, ...")
         if not 1e-3 <= self.courant <= 10:
             raise ValueError(f"courant = {self.courant} cannot be run; choose 0.001 to 10, 0.4 is usual")
+
+        if not (0 <= self.order <= 10 and self.time_limit > 0 and self.memory_limit >= 0):
+            raise ValueError("order must be from 0 to 10, time_limit above 0, and memory_limit 0 or more")
+
+    @property
+    def computed_by(self) -> str:
+        """Module that runs it: with the reference solver, or with one of somebody else."""
+        return f"mpm_verify.cases.mms.{'external.' if self.solver else ''}execute"
+
+    @property
+    def plugins(self) -> dict[str, str]:
+        """Packages of the fields that name a plug-in which computes."""
+        known = super().plugins
+        return {name: known[name] for name in ("solution", "material")} if self.solver else known
+
+    @property
+    def again(self) -> bool:
+        """Whether a failed Result is run again: somebody may have mended the solver, or the machine."""
+        return bool(self.solver)
 
     @property
     def cost(self) -> float:
@@ -77,7 +103,8 @@ class Run(RunRecord):
         return (self.cells + 1) ** 2
 
     def __str__(self) -> str:
-        return f"{label(self.method)} {self.cells}² cells, {self.ppc} per cell"
+        name = self.solver.split()[0] if self.solver else label(self.method)
+        return f"{name} {self.cells}² cells, {self.ppc} per cell"
 
 
 @dataclass(frozen=True)
@@ -101,8 +128,14 @@ class Result(ResultRecord[Run]):
     run: Run
     packed: Packed | None = None  # see cases/mms/packing.py; None where nobody looked
     audit: tuple[BlindSpot, ...] = field(default=())  # what a study of the solution cannot see, and what it can
+    log: tuple[str, ...] = ()  # last lines that a solver of somebody else printed
+    exit_code: int | None = None  # of that solver
+    told: str = ""  # version that its result.json states
 
     def __post_init__(self) -> None:
+        if self.run.solver:
+            super().__post_init__()
+            return
         values = [self.errors.get(q, {}).get(n, inf) for q in QUANTITIES for n in NORMS]
         if self.status == "finished" and not all(0 <= value < inf for value in values):
             raise ValueError("a finished run has every error of every quantity, finite and not negative")

@@ -4,12 +4,14 @@ import os
 import resource
 import signal
 import subprocess
-from collections.abc import Sequence
+import time
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 MOST_BYTES = 100 * 2**20  # in one file that it writes
+PAUSE, GRACE = 0.05, 2.0  # seconds between two looks, and between a request to end and the end
 LAST = 2000  # characters of what it said that are kept
 
 
@@ -26,7 +28,16 @@ class Ended:
         return self.code == 0
 
 
-def run(words: Sequence[str], folder: Path, seconds: float, given: str = "", into: str = "out.txt") -> Ended:
+def run(
+    words: Sequence[str],
+    folder: Path,
+    seconds: float,
+    given: str = "",
+    into: str = "out.txt",
+    memory: float = 0.0,
+    look: Callable[[], None] = lambda: None,
+    here: Path | None = None,
+) -> Ended:
     """Run a program to its end, and end all that it has started.
 
     Parameters
@@ -34,39 +45,60 @@ def run(words: Sequence[str], folder: Path, seconds: float, given: str = "", int
     words
         Program and arguments.
     folder
-        Working directory; the output is written to the file `into` in it.
+        Folder of its output, which is written to the file `into`; its working directory too.
     seconds
         Time that it may take.
     given
         Name of the file in the folder that it reads as its input; nothing is given to it without one.
+    into
+        Name of the file in the folder that takes its output; that of its errors has the ending .err.
+    memory
+        Bytes of address space that it may have; 0: any number.
+    look
+        Called while it runs; what it raises ends the program too.
+    here
+        Another working directory.
 
     Returns
     -------
     Ended
         Its exit code, and the last lines of its error output.
     """
+
+    def limited() -> None:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (MOST_BYTES, MOST_BYTES))
+        if memory:
+            resource.setrlimit(resource.RLIMIT_AS, (int(memory), int(memory)))
+
     errors = folder / f"{into}.err"
     source = folder / given if given else Path(os.devnull)
     with source.open("rb") as reads, (folder / into).open("wb") as writes, errors.open("wb") as complains:
         try:
             process = subprocess.Popen(
-                list(words), cwd=folder, stdin=reads, stdout=writes, stderr=complains, start_new_session=True,
+                list(words), cwd=here or folder, stdin=reads, stdout=writes, stderr=complains, start_new_session=True,
                 preexec_fn=limited,
             )  # fmt: skip
         except OSError as error:
             return Ended(127, f"{words[0]}: {error.strerror}")
         code: int | None = None
+        until = time.monotonic() + seconds
         try:
-            code = process.wait(timeout=seconds)
-        except subprocess.TimeoutExpired:
-            pass
+            while code is None and time.monotonic() < until:
+                look()
+                with suppress(subprocess.TimeoutExpired):
+                    code = process.wait(timeout=min(PAUSE, max(0.0, until - time.monotonic())))
         finally:
-            with suppress(ProcessLookupError, PermissionError):
-                os.killpg(process.pid, signal.SIGKILL)
-            process.wait()
+            end(process)
     return Ended(code, errors.read_bytes()[-LAST:].decode(errors="replace").strip())
 
 
-def limited() -> None:
-    """Limit what a process writes to one file."""
-    resource.setrlimit(resource.RLIMIT_FSIZE, (MOST_BYTES, MOST_BYTES))
+def end(process: "subprocess.Popen[bytes]") -> None:
+    """End a process group, first asked and then killed, if it has not ended."""
+    if process.poll() is None:
+        with suppress(ProcessLookupError, PermissionError):
+            os.killpg(process.pid, signal.SIGTERM)
+        with suppress(subprocess.TimeoutExpired):
+            process.wait(GRACE)
+    with suppress(ProcessLookupError, PermissionError):
+        os.killpg(process.pid, signal.SIGKILL)
+    process.wait()

@@ -5,9 +5,6 @@ octave/ the force and the exact fields in other languages, selfcheck.csv and sel
 with, each with its tolerance, and README.md says all of it in words.
 """
 
-import json
-from collections.abc import Mapping
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -18,13 +15,13 @@ from pydantic import TypeAdapter, ValidationError
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.mms.export.case import Exported
 from mpm_verify.mms.export.checking import Table, needed, table
-from mpm_verify.mms.export.record import CaseRecord, flat
+from mpm_verify.mms.export.files import CASE, FIELDS, FORCE, files
+from mpm_verify.mms.export.record import CaseRecord
 from mpm_verify.reports.export.vtk import particles_file
 from mpm_verify.solver.state import Floats
 
 TEMPLATES = Path(__file__).absolute().parent.parent / "templates"
-CASE, FLAT, PARTICLES, VTU, README = "case.json", "case.txt", "particles.csv", "particles.vtu", "README.md"
-FORCE, FIELDS = "selfcheck.csv", "selfcheck_fields.csv"
+VTU, README = "particles.vtu", "README.md"
 
 
 def schema() -> dict[str, Any]:
@@ -73,24 +70,13 @@ def write(folder: Path, case: Exported) -> list[Path]:
         If a file cannot be written.
     """
     usable(folder)
-    texts = {
-        FLAT: "".join(f"{name} {value}\n" for name, value in flat(case.record)),
-        PARTICLES: csv(case.particles), FORCE: csv(case.force), FIELDS: csv(case.fields), **case.sources,
-        README: words(case.record), CASE: json.dumps(asdict(case.record), indent=1) + "\n",
-    }  # fmt: skip
+    texts = files(case) | {README: words(case.record)}
     for parent in {Path(name).parent for name in texts}:
         (folder / parent).mkdir(parents=True, exist_ok=True)
     particles_file(folder / VTU, case.particles, case.record.dimension)
     for name, text in texts.items():
         Store.write(folder / name, text.encode())
     return [folder / VTU, *(folder / name for name in texts)]
-
-
-def csv(columns: Mapping[str, Floats]) -> str:
-    """Text of a table: a header line, then numbers in 17 digits, which are read as the same doubles."""
-    rows = np.column_stack(list(columns.values()))
-    lines = [",".join(columns), *(",".join(f"{value:.17g}" for value in row) for row in rows)]
-    return "\n".join(lines) + "\n"
 
 
 def words(record: CaseRecord) -> str:

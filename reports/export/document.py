@@ -129,7 +129,7 @@ class RunRow:
     values: dict[str, float | None]
     time_steps: int
     particles: int
-    crossings: int
+    crossings: int | None
     gap: float | None
     wall_s: float
 

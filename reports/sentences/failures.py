@@ -15,6 +15,10 @@ CAUSES = {
     FailureKind.EMPTY_CELL: "no particle in a cell that the body fills",
     FailureKind.TIME_LIMIT: "the solver took longer than it may",
     FailureKind.SOLVER_ERROR: "the solver ended with an error",
+    FailureKind.NO_ANSWER: "the solver has not written a file",
+    FailureKind.UNREADABLE: "the solver has written a file that cannot be read",
+    FailureKind.NO_COLUMN: "the solver has left out a column",
+    FailureKind.PARTICLES: "the solver has written other particles than it was given",
     FailureKind.NOT_RUN: "not run yet",
     FailureKind.OSCILLATES: "the values go to and fro",
     FailureKind.NO_ERROR: "no error",
@@ -37,7 +41,25 @@ def cause(failure: Failure) -> str:
         return f"the particle's domain is wider than {limit}"
     if failure.kind is FailureKind.TIME_LIMIT and n:
         return f"the solver took longer than {n['seconds']:g} s"
-    return kind(failure.kind)
+    return theirs(failure) or kind(failure.kind)
+
+
+def theirs(failure: Failure) -> str:
+    """Failure of a solver of somebody else, with what the file lacks; empty of any other."""
+    n, file, k = failure.numbers, failure.names.get("file", ""), failure.kind
+    if k is FailureKind.SOLVER_ERROR and n:
+        signal = n["code"] < 0
+        said = f": {failure.names['said']}" if "said" in failure.names else ""
+        return f"the solver ended with {'signal' if signal else 'exit code'} {abs(n['code']):g}{said}"
+    if k is FailureKind.NO_ANSWER:
+        return f"the solver has not written {file}"
+    if k is FailureKind.UNREADABLE:
+        return f"{file} cannot be read"
+    if k is FailureKind.NO_COLUMN:
+        return f"{file} has no column {failure.names['column']}"
+    if k is FailureKind.PARTICLES:
+        return f"{file} has {n['found']:g} of the {n['expected']:g} particles that were given"
+    return ""
 
 
 def failure(failure: Failure) -> str:

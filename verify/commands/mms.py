@@ -16,11 +16,17 @@ Quick = Annotated[
     bool, typer.Option("--quick", help="8,12,16,24,32 cells with 4 particles each, and no page: a verdict in seconds.")
 ]
 
+As = Annotated[str | None, typer.Option("--as", help="Method that a solver of your own is judged as.")]
 
-def mms(asked: dict[str, list[str]], replicates: int, quick: bool, out: Path | None, **more: Any) -> int:
+
+def mms(
+    asked: dict[str, list[str]], replicates: int, quick: bool, judged_as: str | None, out: Path | None, **more: Any
+) -> int:
     """Convergence of MPM and its family to a manufactured solution: errors, observed orders, verdict, HTML report."""
     from mpm_verify.verify.run import Settings, conduct, study_of, usage
 
+    if judged_as:
+        asked["method"] = [judged_as]
     with usage():
         from mpm_verify.cases.harness.build import Asked
 
@@ -36,5 +42,5 @@ def mms(asked: dict[str, list[str]], replicates: int, quick: bool, out: Path | N
 
 def add(app: typer.Typer) -> None:
     """Add the command, with an option for each field of a run."""
-    own = {"replicates": (Replicates, 1), "quick": (Quick, False)}
+    own = {"judged_as": (As, None), "replicates": (Replicates, 1), "quick": (Quick, False)}
     study_command(app, "mms", Run, mms, AXES, own)

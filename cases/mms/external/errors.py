@@ -1,4 +1,4 @@
-"""Error norms of frames that somebody else's solver has written: rms and max over frames and particles, final.
+"""Error norms of frames that somebody else's solver has written: rms, max and printed over frames and particles, final.
 
 With e the error of a particle in a frame, and weights V0 / mean V0, as cases/mms/norms.py has them over all steps.
 """
@@ -8,7 +8,7 @@ from math import sqrt
 
 import numpy as np
 
-from mpm_verify.cases.external.answer import Frame, Levels
+from mpm_verify.cases.mms.external.answer import Frame, Levels
 from mpm_verify.mms.manufacture import Manufactured
 from mpm_verify.solver.state import Floats
 
@@ -63,6 +63,8 @@ def compare(exact: Manufactured, X: Floats, V0: Floats, dt: float, frames: dict[
             sizes.append(float((weight * (COMPONENTS.get(quantity, 1.0) * truth**2).sum(axis=1)).mean()))
             rounding.append(frame.resolution.get(key, 0.0) ** 2)
             final = sqrt(squares[-1]) if step == last else final
-        errors[quantity] = {"rms": sqrt(np.mean(squares)), "max": sqrt(max(largest)), "final": final}
+        rms = sqrt(np.mean(squares))
+        printed = rms / sqrt(len(frames) * len(X))
+        errors[quantity] = {"rms": rms, "max": sqrt(max(largest)), "final": final, "printed": printed}
         scale[quantity], floor[quantity] = sqrt(np.mean(sizes)), sqrt(np.mean(rounding))
     return Found(errors, scale, floor)

@@ -1,0 +1,118 @@
+"""One run of the external case: a case folder is written, somebody else's program reads it, its answer is compared."""
+
+import tempfile
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from mpm_verify.cases.harness.environment import environment
+from mpm_verify.cases.harness.study import Arrays, parameters
+from mpm_verify.cases.mms.exact import audited, manufactured
+from mpm_verify.cases.mms.external.answer import Levels, levels, read
+from mpm_verify.cases.mms.external.command import filled
+from mpm_verify.cases.mms.external.errors import Found, compare
+from mpm_verify.cases.mms.run import Result, Run
+from mpm_verify.mms.export.case import Exported, Names, export
+from mpm_verify.mms.export.files import files
+from mpm_verify.mms.export.process import Ended
+from mpm_verify.mms.export.process import run as run_program
+from mpm_verify.solver.failure import Failure, FailureKind, RunFailed
+from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS, create
+
+FRAMES = 16
+LOG, LINES, WIDTH = "log.txt", 5, 300  # of the log, the last lines that are kept with the Result
+ROUND = float(np.finfo(np.float64).eps)
+
+
+def execute(run: Run, tick: Callable[[float], None] = lambda fraction: None) -> tuple[Result, Arrays]:
+    """Run the program to its end, or to where it fails: that is a Result too. `tick` hears the fraction of frames."""
+    case = exported(run)
+    with tempfile.TemporaryDirectory(prefix="mpm-verify-") as place:
+        folder, out = Path(place) / "case", Path(place) / "out"
+        out.mkdir()
+        for name, text in files(case).items():
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            (folder / name).write_text(text, encoding="utf-8")
+        words, room = filled(run.solver, folder, out), run.memory_limit * 2**20
+
+        def look() -> None:
+            tick(len(list(out.glob("result_*"))) / (1 + len(case.record.frames)))
+
+        started = time.perf_counter()
+        ended = run_program(words, out, run.time_limit, into=LOG, memory=room, look=look, here=Path.cwd())
+        wall = time.perf_counter() - started
+        failure, found, told = None, Found({}, {}, {}), Levels()
+        log = last_lines(out / LOG, ended)
+        try:
+            check(ended, run.time_limit, log)
+            told = levels(out)
+            found = answered(run, case, out, told)
+        except RunFailed as error:
+            failure = error.failure
+        result = result_of(run, case, found, failure)
+        result = replace(result, wall_s=wall, log=log, exit_code=ended.code, told=told.version)
+    return result, {}
+
+
+def check(ended: Ended, seconds: float, log: tuple[str, ...]) -> None:
+    """Raise RunFailed for a program that did not end with 0, with the last line that it printed."""
+    names = {"said": log[-1]} if log else {}
+    if ended.code is None:
+        raise RunFailed(FailureKind.TIME_LIMIT, -1, numbers={"seconds": seconds}, names=names)
+    if ended.code != 0:
+        raise RunFailed(FailureKind.SOLVER_ERROR, -1, numbers={"code": float(ended.code)}, names=names)
+
+
+@cache
+def exported(run: Run) -> Exported:
+    """Content of the case folder."""
+    solution, material = create(SOLUTIONS, run.solution), create(MATERIALS, run.material)
+    names = Names(run.solution, run.material)
+    return export(names, solution, material, run.cells, run.ppc, run.courant, FRAMES)
+
+
+def answered(run: Run, case: Exported, out: Path, told: Levels) -> Found:
+    """Errors of the frames. Raises RunFailed for an answer that is missing or cannot be read."""
+    X = np.stack([case.particles["X"], case.particles["Y"]], axis=-1)
+    spacing = case.record.dx / np.sqrt(run.ppc)
+    frames = {step: read(out, step, X, spacing) for step in case.record.frames}
+    return compare(manufactured(run.solution, run.material), X, case.particles["V0"], case.record.dt, frames, told)
+
+
+def result_of(run: Run, case: Exported, found: Found, failure: Failure | None) -> Result:
+    """Result with the errors that were found."""
+    finite = all(np.isfinite(list(norms.values())).all() for norms in found.errors.values())
+    if not failure and not finite:
+        failure = Failure(FailureKind.ERROR_NOT_FINITE, case.record.steps)
+    walk = ROUND * float(np.sqrt(case.record.steps))
+    extent = float(np.ptp(case.particles["X"]))
+    size = {**found.scale, "u": extent, "F": 1.0}
+    floor = {q: float(max(digits, walk * size[q])) for q, digits in found.floor.items()}
+    return Result(
+        run=run,
+        digest=run.digest,
+        status="failed" if failure else "finished",
+        errors={} if failure else found.errors,
+        steps=case.record.steps,
+        particles=case.record.particles,
+        dt=case.record.dt,
+        scale=found.scale,
+        floor={} if failure else floor,
+        failure=failure,
+        crossings=None,
+        audit=audited(run.solution, run.material),
+        environment=environment(),
+        parameters=parameters("solution", create(SOLUTIONS, run.solution))
+        | parameters("material", create(MATERIALS, run.material)),
+    )
+
+
+def last_lines(log: Path, ended: Ended) -> tuple[str, ...]:
+    """Last lines that the program printed, those on its error output last."""
+    said = log.read_bytes()[-4 * LINES * WIDTH :].decode("utf-8", "replace") if log.exists() else ""
+    lines = [line.strip()[:WIDTH] for line in f"{said}\n{ended.said}".splitlines() if line.strip()]
+    return tuple(lines[-LINES:])
