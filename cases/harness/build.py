@@ -225,6 +225,8 @@ def named(asked: Asked) -> str:
         chosen = values.pop(key, usual[key])
         words += map(str, chosen) if chosen != usual[key] or (key == "method" and case.quantities) else ()
     for item in fields(case.Run):
+        if item.metadata.get("whole") and item.name in values:  # a command: the names of its files
+            values[item.name] = [re.sub(r"\{\w*\}|[^\s{}]*/", "", text) for text in values[item.name]]
         if item.name in values and values[item.name] != usual[item.name]:
             words += [item.name, *map(str, _flat(values[item.name]))]
     words += ["replicates", str(asked.replicates)] if asked.replicates != 1 else []

@@ -50,7 +50,9 @@ def show(record: Record, page: Path | None, console: Console | None = None) -> N
         if finding.stall:
             out.print(stall(record, finding, finding.stall))
     if not any(f.plan.judged for f in found):
-        out.print("INCONCLUSIVE: nothing here has a registered expectation, so nothing is judged.")
+        theirs = any(getattr(run, "solver", "") for run in study.runs)
+        hint = "; say what is expected: --order 2, or --as METHOD" if theirs else ""
+        out.print(f"INCONCLUSIVE: nothing here has a registered expectation, so nothing is judged{hint}.")
     where(out, page, "\nMore quantities and norms, figures, and how it was made:")
 
 

@@ -112,14 +112,15 @@ def table(path: Path, step: int) -> tuple[dict[str, Floats], dict[str, float]]:
     """Columns of a file by name, and the rounding of each. Raises RunFailed."""
     try:
         columns = {".npz": arrays, ".vtu": mesh}.get(path.suffix, text)(path)
+        kept = {name: np.asarray(values, dtype=np.float64) for name, values in columns.items()}
+        told = {name: rounding(values) for name, values in columns.items()}
     except RunFailed:
         raise
     except Exception:  # of three libraries, for anything that is not such a file
         raise RunFailed(FailureKind.UNREADABLE, step, names={"file": path.name}) from None
     if len({len(values) for values in columns.values()}) > 1 or not columns:
         raise RunFailed(FailureKind.UNREADABLE, step, names={"file": path.name})
-    kept = {name: np.asarray(values, dtype=np.float64) for name, values in columns.items()}
-    return kept, {name: rounding(values) for name, values in columns.items()}
+    return kept, told
 
 
 def text(path: Path) -> dict[str, Any]:

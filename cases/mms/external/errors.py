@@ -43,7 +43,8 @@ def compare(exact: Manufactured, X: Floats, V0: Floats, dt: float, frames: dict[
     Returns
     -------
     Found
-        For u, and each of v, F and sigma that every frame has.
+        For u, and each of v, F and sigma that every frame has. The floor is that of the frame with most digits: numbers
+        that happen to be round have few.
     """
     weight = V0 / V0.mean()
     lags = {"u": 0.0, "v": levels.v_lag, "F": levels.F_lag, "sigma": levels.F_lag}
@@ -61,10 +62,10 @@ def compare(exact: Manufactured, X: Floats, V0: Floats, dt: float, frames: dict[
             squares.append(float((weight * square).mean()))
             largest.append(float(square.max()))
             sizes.append(float((weight * (COMPONENTS.get(quantity, 1.0) * truth**2).sum(axis=1)).mean()))
-            rounding.append(frame.resolution.get(key, 0.0) ** 2)
+            rounding.append(frame.resolution.get(key, 0.0))
             final = sqrt(squares[-1]) if step == last else final
         rms = sqrt(np.mean(squares))
         printed = rms / sqrt(len(frames) * len(X))
         errors[quantity] = {"rms": rms, "max": sqrt(max(largest)), "final": final, "printed": printed}
-        scale[quantity], floor[quantity] = sqrt(np.mean(sizes)), sqrt(np.mean(rounding))
+        scale[quantity], floor[quantity] = sqrt(np.mean(sizes)), min(rounding)
     return Found(errors, scale, floor)

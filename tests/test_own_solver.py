@@ -1,0 +1,370 @@
+"""A solver of somebody else: its command, its answer in any order and form, its failures, and its digits."""
+
+import json
+import shutil
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from fixtures_command import Call, caller, one_line
+
+from mpm_verify.cases.harness.build import Asked, build
+from mpm_verify.cases.mms.external import command
+from mpm_verify.cases.mms.external.answer import Frame, Levels, levels, read
+from mpm_verify.cases.mms.external.errors import compare
+from mpm_verify.cases.mms.run import Run
+from mpm_verify.mms.manufacture import manufacture
+from mpm_verify.reports.sentences import failures
+from mpm_verify.solver.failure import FailureKind, RunFailed
+from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS, create
+from mpm_verify.solver.state import Floats
+
+HEAD = "id,X,Y,x,y,vx,vy,Fxx,Fxy,Fyx,Fyy,sxx,syy,szz,sxy"
+LAW = create(MATERIALS, "neo_hookean")
+SOLUTION = create(SOLUTIONS, "clamped_shear")
+EXACT = manufacture(SOLUTION, LAW, LAW.rho0)
+LAYOUT = SOLUTION.layout(0.25, 4)
+X, STEPS, DT, USUAL = LAYOUT.X, (3, 7), 1e-3, Levels()
+
+
+@pytest.fixture
+def verify(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> Call:
+    return caller(monkeypatch, capsys, tmp_path)
+
+
+def rows(step: int, v_lag: float = 0.5, F_lag: float = 0.0) -> Floats:
+    """The exact answer at a step, (P,15)."""
+    t = step * DT
+    x, v = EXACT.x(X, t), EXACT.v(X, t - v_lag * DT)
+    F, sigma = EXACT.F(X, t - F_lag * DT).reshape(-1, 4), EXACT.sigma(X, t - F_lag * DT)
+    return np.column_stack([np.arange(len(X)), X, x, v, F, sigma])
+
+
+def written(path: Path, table: Floats, head: str = HEAD, mark: str = ",", form: str = "%.17g") -> None:
+    np.savetxt(path, table, fmt=form, delimiter=mark, header=head.replace(",", mark), comments="")
+
+
+def errors(folder: Path, told: Levels = USUAL) -> dict[str, dict[str, float]]:
+    frames = {step: read(folder, step, X, 0.125) for step in STEPS}
+    return compare(EXACT, X, LAYOUT.V0, DT, frames, told).errors
+
+
+# ---- an answer that is right
+
+
+def csv(folder: Path, step: int, table: Floats) -> None:
+    written(folder / f"result_{step}.csv", table)
+
+
+def permuted(folder: Path, step: int, table: Floats) -> None:
+    written(folder / f"result_{step}.csv", np.random.default_rng(step).permutation(table))
+
+
+def by_position(folder: Path, step: int, table: Floats) -> None:
+    shuffled = np.random.default_rng(step).permutation(table)[:, 1:]
+    written(folder / f"result_{step}.csv", shuffled, HEAD.removeprefix("id,"))
+
+
+def columns_in_another_order(folder: Path, step: int, table: Floats) -> None:
+    written(folder / f"result_{step}.csv", table[:, ::-1], ",".join(HEAD.split(",")[::-1]))
+
+
+def tabs(folder: Path, step: int, table: Floats) -> None:
+    written(folder / f"result_{step}.tsv", table, mark="\t")
+
+
+def spaces(folder: Path, step: int, table: Floats) -> None:
+    written(folder / f"result_{step}.txt", table, mark=" ")
+
+
+def arrays(folder: Path, step: int, table: Floats) -> None:
+    parts = dict(zip(["x", "v", "F", "sigma"], np.split(table[:, 3:], (2, 4, 8), axis=1), strict=True))
+    np.savez(folder / f"result_{step}.npz", id=table[:, 0], **parts)
+
+
+def three_dimensional_arrays(folder: Path, step: int, table: Floats) -> None:
+    x, v, F, s = np.split(table[:, 3:], (2, 4, 8), axis=1)
+    zero = np.zeros(len(x))
+    full_F = np.stack([F[:, 0], F[:, 1], zero, F[:, 2], F[:, 3], zero, zero, zero, zero + 1], axis=1).reshape(-1, 3, 3)
+    full_s = np.stack([s[:, 0], s[:, 3], zero, s[:, 3], s[:, 1], zero, zero, zero, s[:, 2]], axis=1).reshape(-1, 3, 3)
+    vectors = {"x": np.column_stack([x, zero]), "v": np.column_stack([v, zero]), "X": table[:, 1:3]}
+    np.savez(folder / f"result_{step}.npz", F=full_F, sigma=full_s, **vectors)
+
+
+def points(folder: Path, step: int, table: Floats) -> None:
+    import meshio
+
+    x = np.column_stack([table[:, 3:5], np.zeros(len(table))])
+    data = {"id": table[:, 0], "v": table[:, 5:7], "F": table[:, 7:11], "sigma": table[:, 11:15]}
+    cells = [("vertex", np.arange(len(x))[:, None])]
+    meshio.Mesh(x, cells, point_data=data).write(folder / f"result_{step}.vtu")
+
+
+FORMS = [csv, permuted, by_position, columns_in_another_order, tabs, spaces, arrays, three_dimensional_arrays, points]
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_the_exact_answer_has_no_error(tmp_path: Path, form: Callable[[Path, int, Floats], None]) -> None:
+    for step in STEPS:
+        form(tmp_path, step, rows(step))
+    found = errors(tmp_path)
+    size = {"u": 1e-15, "v": 1e-12, "F": 1e-14, "sigma": 1e-14 * LAW.E}
+    assert set(found) == set(size)
+    assert all(norms["max"] < size[quantity] for quantity, norms in found.items()), found
+
+
+@pytest.mark.parametrize(("v_lag", "F_lag"), [(0.0, 0.0), (0.5, 1.0), (-0.5, -1.0)])
+def test_fields_are_compared_at_the_levels_that_are_told(tmp_path: Path, v_lag: float, F_lag: float) -> None:
+    """And at no other: the usual ones leave an error of v and F."""
+    for step in STEPS:
+        csv(tmp_path, step, rows(step, v_lag, F_lag))
+    (tmp_path / "result.json").write_text(json.dumps({"v_lag": v_lag, "F_lag": F_lag, "version": "mine 1.2"}))
+    told = levels(tmp_path)
+    assert told.version == "mine 1.2"
+    right, usual = errors(tmp_path, told), errors(tmp_path)
+    assert right["v"]["max"] < 1e-12
+    assert (usual["v"]["max"] > 1e-6) == (v_lag != 0.5)
+    assert right["F"]["max"] < 1e-14
+    assert (usual["F"]["max"] > 1e-6) == (F_lag != 0)
+
+
+def test_norms_of_a_known_error() -> None:
+    """Every particle is off by 3 and 4 in x: rms, max and final are 5; printed shrinks with what there is."""
+    frames = {step: Frame({"x": EXACT.x(X, step * DT) + np.array([3.0, 4.0])}) for step in STEPS}
+    found = compare(EXACT, X, LAYOUT.V0, DT, frames, Levels())
+    assert set(found.errors) == {"u"}
+    for norm in ("rms", "max", "final"):
+        assert found.errors["u"][norm] == pytest.approx(5.0, rel=1e-12)
+    assert found.errors["u"]["printed"] == pytest.approx(5.0 / np.sqrt(2 * len(X)), rel=1e-12)
+
+
+def test_columns_that_are_missing_are_not_judged(tmp_path: Path) -> None:
+    for step in STEPS:
+        written(tmp_path / f"result_{step}.csv", rows(step)[:, [0, 3, 4, 5, 6]], "id,x,y,vx,vy")
+    assert set(errors(tmp_path)) == {"u", "v"}
+
+
+@pytest.mark.parametrize(("form", "floor"), [("%.17g", 1e-17), ("%.6f", 3e-7), ("%.4e", 1e-5), ("%.9g", 1e-10)])
+def test_digits_of_a_file_are_a_floor(tmp_path: Path, form: str, floor: float) -> None:
+    """Within a factor of three of the error that they make, measured."""
+    for step in STEPS:
+        written(tmp_path / f"result_{step}.csv", rows(step), form=form)
+    frames = {step: read(tmp_path, step, X, 0.125) for step in STEPS}
+    found = compare(EXACT, X, LAYOUT.V0, DT, frames, Levels())
+    assert floor / 5 < found.floor["u"] < 5 * floor
+    if floor > 1e-12:
+        assert found.errors["u"]["rms"] / 3 < found.floor["u"] < 3 * found.errors["u"]["rms"]
+
+
+# ---- an answer that is none
+
+
+def broken(text: str) -> Callable[[Path], None]:
+    return lambda path: path.write_text(text) and None
+
+
+def cut(keep: slice) -> Callable[[Path], None]:
+    return lambda path: written(path, rows(3)[keep])
+
+
+def with_value(value: float, column: int = 3) -> Callable[[Path], None]:
+    def write(path: Path) -> None:
+        table = rows(3)
+        table[5, column] = value
+        written(path, table)
+
+    return write
+
+
+BAD: dict[str, tuple[Callable[[Path], None], FailureKind, str]] = {
+    "empty": (broken(""), FailureKind.UNREADABLE, "cannot be read"),
+    "a header alone": (broken(HEAD + "\n"), FailureKind.PARTICLES, "0 of the 64 particles"),
+    "no numbers": (broken("id,x,y\n" + "a,b,c\n" * 64), FailureKind.UNREADABLE, "cannot be read"),
+    "binary": (lambda path: path.write_bytes(b"\x00\xff\xfe" * 99) and None, FailureKind.UNREADABLE, "cannot be read"),
+    "ragged": (broken("id,x,y\n0,1,2\n1,2,3,4,5\n"), FailureKind.UNREADABLE, "cannot be read"),
+    "half of the particles": (cut(slice(0, 32)), FailureKind.PARTICLES, "32 of the 64"),
+    "one particle lost": (cut(slice(1, None)), FailureKind.PARTICLES, "63 of the 64"),
+    "ids twice": (with_value(0.0, 0), FailureKind.PARTICLES, "63 of the 64"),
+    "an id that is none": (with_value(999.0, 0), FailureKind.PARTICLES, "63 of the 64"),
+    "not a number": (with_value(np.nan), FailureKind.NOT_FINITE, "not finite"),
+    "infinite": (with_value(np.inf), FailureKind.NOT_FINITE, "not finite"),
+    "no x": (broken("id,y\n" + "".join(f"{k},0\n" for k in range(64))), FailureKind.NO_COLUMN, "no column x"),
+    "no name": (broken("x,y\n" + "0,0\n" * 64), FailureKind.NO_COLUMN, "no column id"),
+    "other positions": (broken("X,Y,x,y\n" + "9,9,9,9\n" * 64), FailureKind.PARTICLES, "0 of the 64"),
+}
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_an_answer_that_cannot_be_used(tmp_path: Path, name: str) -> None:
+    write, kind, says = BAD[name]
+    write(tmp_path / "result_3.csv")
+    with pytest.raises(RunFailed) as caught:
+        read(tmp_path, 3, X, 0.125)
+    assert caught.value.failure.kind is kind
+    assert says in failures.failure(caught.value.failure)
+
+
+def test_a_frame_that_is_missing(tmp_path: Path) -> None:
+    with pytest.raises(RunFailed) as caught:
+        read(tmp_path, 3, X, 0.125)
+    assert failures.failure(caught.value.failure) == "the solver has not written result_3.csv at step 3"
+
+
+@pytest.mark.parametrize("text", ["", "[]", "{", '{"v_lag": "x"}', '{"v_lag": 99}', '{"F_lag": null}', "null"])
+def test_levels_that_cannot_be_read(tmp_path: Path, text: str) -> None:
+    (tmp_path / "result.json").write_text(text)
+    with pytest.raises(RunFailed, match="unreadable"):
+        levels(tmp_path)
+
+
+# ---- the command
+
+
+def test_the_version_is_of_the_program_and_of_its_files(tmp_path: Path) -> None:
+    script = tmp_path / "mine.py"
+    script.write_text("x = 1\n")
+    typed = f"{sys.executable} {script} {{case}} {{out}}"
+    before = command.version(typed)
+    assert command.version(typed) == before
+    script.write_text("x = 2\n")
+    assert command.version(typed) != before
+    assert command.program(typed) == "mine.py"
+
+
+REFUSED = {
+    "no program": ("./nothing_there {case} {out}", "there is no program"),
+    "no case": ("python {out}", "has no {case}"),
+    "no out": ("python {case}", "has no {out}"),
+    "neither": ("python", "has no {case} and no {out}"),
+    "a quote": ("python '{case} {out}", "cannot be split"),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_a_command_that_cannot_be_run(verify: Call, name: str) -> None:
+    typed, says = REFUSED[name]
+    assert says in one_line(verify("mms", "--quick", "--solver", typed))
+
+
+@pytest.mark.parametrize("option", ["--transfer=apic", "--stress=usf", "--layout=graded", "--no-staggered"])
+def test_what_is_for_the_reference_solver(verify: Call, option: str) -> None:
+    typed = f"{sys.executable} {{case}} {{out}}"
+    assert "leave it out beside --solver" in one_line(verify("mms", "--quick", "--solver", typed, option))
+
+
+def test_a_method_to_be_judged_as(verify: Call) -> None:
+    typed = f"{sys.executable} {{case}} {{out}}"
+    line = one_line(verify("mms", "--quick", "--solver", typed, "--as", "gmp"))
+    assert "did you mean gimp?" in line
+
+
+def test_the_name_of_a_run_holds_what_computes_and_not_what_is_expected() -> None:
+    run = Run(solver="x {case} {out}", solver_version="1", material="neo_hookean")
+    assert run.digest == replace(run, order=2.0).digest == replace(run, time_limit=5.0).digest
+    assert run.digest != replace(run, solver_version="2").digest
+    assert run.digest != replace(run, solver="").digest
+
+
+# ---- programs that fail
+
+PROGRAM = """
+import json, pathlib, sys, time
+case, out = map(pathlib.Path, sys.argv[1:])
+record = json.loads((case / "case.json").read_text())
+{body}
+"""
+PERFECT = """
+import importlib.util, numpy as np
+spec = importlib.util.spec_from_file_location("exact", case / "body_force.py")
+exact = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(exact)
+table = np.genfromtxt(case / "particles.csv", delimiter=",", names=True)
+X = np.stack([table["X"], table["Y"]], axis=1)
+error = record["dx"] ** 2
+for step in record["frames"]:
+    x = X + exact.displacement(X, step * record["dt"]) * (1 + error)
+    np.savetxt(out / f"result_{step}.csv", np.column_stack([table["id"], x]), "%.17g", ",",
+               header="id,x,y", comments="")
+"""
+FAILS = {
+    "it raises": ("raise SystemExit('the wall is missing')", "exit code 1: the wall is missing"),
+    "it dies": ("import os; os.kill(os.getpid(), 11)", "signal 11"),
+    "it writes nothing": ("pass", "has not written result_"),
+    "it hangs": ("print('step 1', flush=True); time.sleep(99)", "longer than 0.5 s"),
+}
+
+
+def study(verify: Call, tmp_path: Path, body: str, *more: str, order: str = "2") -> tuple[int, dict[str, Any]]:
+    """Exit code and JSON of a study of a program."""
+    script = tmp_path / "mine.py"
+    script.write_text(PROGRAM.format(body=body))
+    typed = f"{sys.executable} {script} {{case}} {{out}}"
+    words = ["mms", "--solver", typed, "--cells", "8,12,16,24", "--order", order, "--out", "study", "--json", *more]
+    code, out, _ = verify(*words)
+    return code, json.loads(out)
+
+
+@pytest.mark.parametrize("name", FAILS)
+def test_a_program_that_fails_is_a_result(verify: Call, tmp_path: Path, name: str) -> None:
+    body, says = FAILS[name]
+    code, told = study(verify, tmp_path, body, "--time-limit", "0.5" if "hangs" in name else "60")
+    assert code == 4
+    assert told["outcome"] == "ERROR"
+    assert says in told["runs"][0]["reason"]
+
+
+def test_a_repaired_program_is_run_again_and_judged(verify: Call, tmp_path: Path) -> None:
+    """Errors of dx^2 by construction: order 2 in all digits. What failed before is not taken from the store."""
+    code, told = study(verify, tmp_path, "raise SystemExit(3)", "--courant", "0.4,0.2", "--solver-version", "same")
+    assert code == 4
+    code, told = study(verify, tmp_path, PERFECT, "--courant", "0.4,0.2", "--solver-version", "same")
+    assert code == 0, told["verdicts"]
+    (verdict,) = (v for v in told["verdicts"] if v["quantity"] == "u")
+    assert verdict["order"] == pytest.approx(2.0, abs=0.03)
+    assert verdict["verdict"] == "PASS"
+
+
+def test_nothing_is_judged_without_an_expectation(verify: Call, tmp_path: Path) -> None:
+    code, told = study(verify, tmp_path, PERFECT, order="0")
+    assert (code, told["verdicts"]) == (3, [])
+
+
+def test_the_study_has_the_name_of_the_program() -> None:
+    typed = f"{sys.executable} {__file__} {{case}} {{out}}"
+    made = build(Asked("mms", {"solver": [typed], "solution": ["bump"]}), "verify mms")
+    assert {run.method for run in made.runs} == {"test_own_solver"}
+    assert [run.cells for run in made.runs if run.courant == 0.4] == [8, 16, 32, 64]
+    assert "test_own_solver.py against the manufactured solution bump" in made.title
+
+
+# ---- the examples, against the digits that eight programs agree on
+
+DIGITS = {
+    "clamped_shear:G=1e-6": (7.253e-8, 3.208e-8, 1.787e-8, 7.873e-9, 4.415e-9),
+    "bump": (4.139e-8, None, 1.079e-8, None, 2.737e-9),
+}
+NEEDS = {"python": None, "cpp": "c++", "fortran": "gfortran", "julia": "julia"}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("language", ["python", "cpp"])
+@pytest.mark.parametrize("solution", DIGITS)
+def test_the_examples_have_the_digits_of_other_programs(
+    verify: Call, tmp_path: Path, language: str, solution: str
+) -> None:
+    needed = NEEDS[language]
+    if needed and shutil.which(needed) is None:
+        pytest.skip(f"{needed} is not there")
+    code, out, _ = verify("example", language, "toy")
+    assert code == 0
+    typed = out.partition("--solver '")[2].partition("'")[0].replace("python ", f"{sys.executable} ")
+    words = ["--as", "mpm", "--solution", solution, "--out", "study", "--json"]
+    code, out, _ = verify("mms", "--quick", "--solver", typed, *words)
+    found = [r["errors"]["u"]["rms"] for r in json.loads(out)["runs"] if r["courant"] == 0.4]
+    for error, digits in zip(sorted(found, reverse=True), DIGITS[solution], strict=True):
+        assert digits is None or error == pytest.approx(digits, rel=2e-4)
+    assert code == 0
