@@ -48,7 +48,7 @@ class Fields:
         return [sp.sympify(e).xreplace(self.inner) for e in expressions]
 
 
-def derive(solution: Solution, material: Energy, rho0: float) -> Fields:
+def derive(solution: Solution, material: Energy, rho0: float, exact: bool = False) -> Fields:
     """Derive all fields of a solution.
 
     Parameters
@@ -59,6 +59,9 @@ def derive(solution: Solution, material: Energy, rho0: float) -> Fields:
         Constitutive model with an energy.
     rho0
         Density at reference.
+    exact
+        Whether floating-point numbers become the fractions that they are, so that no product of two is rounded: for
+        values in more digits than a double has.
 
     Returns
     -------
@@ -72,10 +75,11 @@ def derive(solution: Solution, material: Energy, rho0: float) -> Fields:
     """
     check_energy(material)
     X, t = sp.symbols("X Y", real=True), sp.Symbol("t", real=True)
-    u = [sp.sympify(component) for component in solution.displacement(X, t)]
+    number = fractions if exact else sp.sympify
+    u = [number(component) for component in solution.displacement(X, t)]
     f = sp.symbols("Fxx Fxy Fyx Fyy", real=True)
     Fzz = sp.Symbol("Fzz", real=True)
-    W = material.energy([[f[0], f[1], 0], [f[2], f[3], 0], [0, 0, Fzz]], sp.log)
+    W = number(material.energy([[f[0], f[1], 0], [f[2], f[3], 0], [0, 0, Fzz]], sp.log))
     P = [sp.diff(W, component).xreplace({Fzz: sp.Integer(1)}) for component in (*f, Fzz)]
     F = [sp.diff(u[k], X[L]) + int(k == L) for k in (0, 1) for L in (0, 1)]
 
@@ -84,7 +88,7 @@ def derive(solution: Solution, material: Energy, rho0: float) -> Fields:
     for i, J, q in product((0, 1), (0, 1), range(4)):  # q runs over the components kL of F
         second = inner_symbol(inner, sp.diff(F[q], X[J]), f"d{f[q]}_d{X[J]}")
         divergence[i] += sp.diff(P[2 * i + J], f[q]) * second
-    b = [inner_symbol(inner, sp.diff(u[i], t, 2), f"a{X[i]}") - divergence[i] / rho0 for i in (0, 1)]
+    b = [inner_symbol(inner, sp.diff(u[i], t, 2), f"a{X[i]}") - divergence[i] / number(rho0) for i in (0, 1)]
 
     J = f[0] * f[3] - f[1] * f[2]
     sigma = [
@@ -96,6 +100,12 @@ def derive(solution: Solution, material: Energy, rho0: float) -> Fields:
     zeros = {symbol: e for symbol, e in inner.items() if e.is_number}  # a diagonal F makes most terms vanish
     P, sigma, b = ([sp.sympify(e).xreplace(zeros) for e in group] for group in (P[:4], sigma, b))
     return Fields(X, t, u, [sp.diff(e, t) for e in u], F, P, sigma, b, inner)
+
+
+def fractions(expression: sp.Expr) -> sp.Expr:
+    """Expression with each floating-point number as the fraction that it is."""
+    e = sp.sympify(expression)
+    return e.xreplace({number: sp.Rational(float(number)) for number in e.atoms(sp.Float)})
 
 
 def inner_symbol(inner: dict[sp.Symbol, sp.Expr], expression: sp.Expr, name: str) -> sp.Symbol:

@@ -7,8 +7,7 @@ from mpm_verify.mms.derive import Fields
 from mpm_verify.mms.exact import ROOM
 from mpm_verify.mms.hoist import Hoist
 from mpm_verify.mms.printed import printed
-
-WHOLE = 2**53  # beyond, whole numbers are not integers that Numba can type
+from mpm_verify.mms.straight_line import assignments, factors, whole_numbers
 
 HEADER = '''"""Generated from a manufactured solution; not for editing."""
 import math
@@ -39,17 +38,11 @@ class Printer(PythonCodePrinter):
 
     def _print_Pow(self, expr: sp.Pow, rational: bool = False) -> str:
         base, exponent = expr.as_base_exp()
-        if not (exponent.is_Integer and 0 < abs(int(exponent)) < 9):
+        count = factors(exponent)
+        if not count:
             return str(super()._print_Pow(expr, rational=rational))
-        product = "*".join([f"({self._print(base)})"] * abs(int(exponent)))
+        product = "*".join([f"({self._print(base)})"] * abs(count))
         return f"({product})" if exponent > 0 else f"(1.0/({product}))"
-
-
-def whole_numbers(expression: sp.Expr) -> sp.Expr:
-    """Write J**(-2.0) as J**(-2): with a whole exponent it is two products, with another a call of pow()."""
-    return sp.sympify(expression).replace(
-        lambda e: e.is_Float and abs(e) < WHOLE and float(e).is_integer(), lambda e: sp.Integer(int(e))
-    )
 
 
 def _body(inner: dict[sp.Symbol, sp.Expr], rows: list[sp.Expr], hoist: Hoist) -> str:
@@ -78,11 +71,5 @@ def _loop(statements: list[str]) -> str:
 
 def _statements(inner: dict[sp.Symbol, sp.Expr], targets: list[tuple[str, sp.Expr]]) -> list[str]:
     """Assignments to `targets`, common subexpressions first; inner symbols that occur are computed before them."""
-    used: set[sp.Symbol] = set().union(*(e.free_symbols for _, e in targets)) if targets else set()
-    given = [(symbol, e) for symbol, e in inner.items() if symbol in used]
-    early, first = sp.cse([e for _, e in given], symbols=sp.numbered_symbols("v"))
-    late, last = sp.cse([e for _, e in targets], symbols=sp.numbered_symbols("w"))
-    order = [*early, *zip([s for s, _ in given], first, strict=True), *late]
-    order += zip([target for target, _ in targets], last, strict=True)
     printer = Printer()
-    return [f"{target} = {printer.doprint(expression)}" for target, expression in order]
+    return [f"{target} = {printer.doprint(expression)}" for target, expression in assignments(inner, targets)]

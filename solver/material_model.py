@@ -35,6 +35,8 @@ class Material:
         Order in the strain step, where the axes of stress turn; None: exact or unknown.
     rho0
         Density at reference.
+    formula
+        Cauchy stress of F as a formula, for whoever writes it in another program; empty where there is none.
     rate
         Objective rate, a file of solver/rates; None for a function of F.
     """
@@ -46,6 +48,7 @@ class Material:
     memory: ClassVar[tuple[str, ...]] = ()
     yields_in_plane: ClassVar[bool] = False
     order: ClassVar[float | None] = None
+    formula: ClassVar[str] = ""
     rho0: float
     rate: str | None = None
 

@@ -31,6 +31,8 @@ BLIND = {
     "axis_aligned:A=1e-5": DIAGONAL | {"start", "amplitude", "crossing"},
     "clamped_shear": {"walls"},
     "localised": {"walls"},
+    "bump": {"walls", "rotation", "amplitude", "crossing"},
+    "bump:A=0.05": {"walls"},
     "clamped_shear:G=1e-4": {"walls", "rotation", "amplitude", "crossing"},
     "affine": {"gradient", "walls", "stress"},
     "affine:a=0.1,b=0,c=0,d=0": DIAGONAL | {"gradient", "walls", "stress", "start", "plane"},

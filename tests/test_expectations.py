@@ -10,6 +10,7 @@ from mpm_verify.cases.mms.deviations import DEVIATIONS, SHOWN, SMALL_AMPLITUDE
 from mpm_verify.cases.mms.expectations import (
     JUDGED_PPC,
     STALL,
+    crosses,
     expected,
     later_with_9,
     registered,
@@ -71,7 +72,7 @@ def test_nothing_registered_repeats_a_promise() -> None:
     """What stands in the table is another order of u, a number beside it, a stall's cells, or how runs end."""
     for solution, methods in DEVIATIONS.items():
         for method, deviation in methods.items():
-            promise = load(METHODS, method).promises(crossing=solution != SMALL_AMPLITUDE)
+            promise = load(METHODS, method).promises(crossing=crosses(solution))
             assert deviation != type(deviation)()
             assert deviation.u is None or deviation.u != promise.order
             assert not (deviation.stalls and deviation.fails)
@@ -85,7 +86,7 @@ def test_a_method_without_an_entry_is_expected_to_keep_its_promise(monkeypatch: 
     assert of("gimp", "bar") is None  # it promises a stall, and on which cells is not known
 
 
-@pytest.mark.parametrize("solution", ["axis_aligned:A=1e-6", "clamped_shear:G=1e-6"])
+@pytest.mark.parametrize("solution", ["axis_aligned:A=1e-6", "clamped_shear:G=1e-6", "bump", "bump:L=2"])
 @pytest.mark.parametrize("method", available(METHODS))
 def test_at_small_amplitude_every_method_is_of_second_order(method: str, solution: str) -> None:
     found = of(method, solution)
@@ -116,6 +117,9 @@ def test_where_nothing_is_expected() -> None:
     assert of("mpm", "swirl:A=1e-6,B=1e-6").order == 2
     assert of("mpm", "expanding_ring:A=1e-6") is None  # at a free edge no amplitude is small
     assert of("bspline3", "bar", ppc=9) is None
+    assert of("mpm", "bump:A=0.05") is None  # what is registered holds for its small default
+    assert of("cpgimp", "bump:A=0.05") is None
+    assert (of("cpdi", "bump:A=0.05").order, of("cpdi", "bump:A=0.05", "v")) == (2, None)
 
 
 def test_an_own_solution_has_the_order_of_its_file(tmp_path: Path) -> None:

@@ -45,7 +45,13 @@ def test_the_wheel_holds_files_under_one_name(wheel: Path) -> None:
     with zipfile.ZipFile(wheel) as archive:
         names = archive.namelist()
     assert {name.partition("/")[0].partition("-")[0] for name in names} == {"mpm_verify"}
-    for file in ("py.typed", "solver/step.py", "reports/templates/report.css", "cases/column/studies/figure5.toml"):
+    for file in (
+        "py.typed",
+        "solver/step.py",
+        "reports/templates/report.css",
+        "mms/export/templates/drivers/driver.c.in",
+        "cases/column/studies/figure5.toml",
+    ):
         assert f"mpm_verify/{file}" in names
 
 

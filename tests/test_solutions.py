@@ -7,11 +7,14 @@ import numpy as np
 import pytest
 import sympy as sp
 
+from mpm_verify.cases.mms.execute import setup
+from mpm_verify.cases.mms.run import Run
 from mpm_verify.mms.exact import ROOM, ROWS
 from mpm_verify.mms.manufacture import Manufactured, manufacture
 from mpm_verify.solver._jit import BLOCK
 from mpm_verify.solver.plugins import create, load
 from mpm_verify.solver.state import Floats
+from mpm_verify.solver.step import advance
 
 NAMES = ["generalised_vortex", "expanding_ring", "bar", "swirl"]
 EXTRA = [
@@ -296,3 +299,31 @@ def test_the_ring_keeps_its_stretches_below_its_bound() -> None:
     X = np.concatenate([circle(R)[0] for R in np.linspace(0.4, 0.6, 21)])
     J = [np.linalg.det(exact.F(X, t)).min() for t in np.linspace(0, 0.02, 41)]
     assert 0 < min(J) < 0.05
+
+
+def over_frames(method: str, solution: str, cells: int, frames: int = 16) -> float:
+    """Error of u, its rms over the particles and over output steps that are spread over the run."""
+    model, comparison, steps = setup(Run(method, solution, "neo_hookean", cells))
+    chosen, squares = {round(steps * k / frames) for k in range(1, frames + 1)}, []
+    for _ in range(steps):
+        advance(model, comparison)
+        if model.steps in chosen:
+            p = model.particles
+            squares.append(((p.x - comparison.exact.x(p.X, model.time)) ** 2).sum(axis=1).mean())
+    return float(np.sqrt(np.mean(squares)))
+
+
+DIGITS = [  # of programs that were written apart from this one, unless said
+    ("mpm", "bump", (4.139e-8, 1.079e-8, 2.737e-9)),
+    ("bspline2", "bump", (8.378e-8, 1.864e-8, 4.595e-9)),
+    ("mpm", "clamped_shear:G=1e-6", (7.253e-8, 1.787e-8, 4.415e-9)),
+    ("gimp", "bump:A=0.05", (4.772e-3, 1.145e-3)),  # the other program: 4.779e-3 1.147e-3
+    ("mpm", "bump:A=0.05", (6.970e-3, 6.164e-3)),
+]
+
+
+@pytest.mark.parametrize(("method", "solution", "errors"), DIGITS)
+def test_digits_of_other_programs(method: str, solution: str, errors: tuple[float, ...]) -> None:
+    """Four digits on 8, 16 and 32 cells: bump has no wall, so a grid of another width gives the same."""
+    measured = [over_frames(method, solution, cells) for cells in (8, 16, 32)[: len(errors)]]
+    assert [float(f"{error:.3e}") for error in measured] == list(errors)

@@ -257,7 +257,18 @@ print("HEAVY", code, *sorted(set(sys.modules) & {set(HEAVY)!r}), file=sys.stderr
 
 
 @pytest.mark.parametrize(
-    "words", [["--help"], ["mms", "--help"], ["report", "--help"], ["list"], ["--version"], ["mms", "--nonsense"]]
+    "words",
+    [
+        ["--help"],
+        ["mms", "--help"],
+        ["report", "--help"],
+        ["list"],
+        ["--version"],
+        ["mms", "--nonsense"],
+        ["export", "--help"],
+        ["check-force", "--help"],
+        ["schema", "--help"],
+    ],
 )
 def test_help_is_light(words: list[str]) -> None:
     """No subcommand's help or list imports what computes."""

@@ -17,8 +17,9 @@ from mpm_verify.cases.mms.gaps import LOOKS, Gaps
 from mpm_verify.cases.mms.norms import Norms, compare, new_sums
 from mpm_verify.cases.mms.packing import Packing
 from mpm_verify.cases.mms.run import QUANTITIES, Result, Run
-from mpm_verify.cases.mms.time_step import time_steps, width
+from mpm_verify.mms.discretisation import grid_box, time_steps, width
 from mpm_verify.mms.manufacture import Manufactured
+from mpm_verify.mms.square import Square
 from mpm_verify.solver.boundary import box, moving
 from mpm_verify.solver.failure import Failure, FailureKind, RunFailed
 from mpm_verify.solver.layout import CENTRED, Layout, parallelograms
@@ -67,10 +68,9 @@ def setup(run: Run) -> tuple[Model, Comparison, int]:
     solution: Any = create(SOLUTIONS, run.solution)
     material: Any = create(MATERIALS, run.material)
     dx = width(solution) / run.cells
-    below, above = dx * np.ceil(np.broadcast_to(solution.margin, (2, 2)) / dx)
-    free = solution.boundary == "free"  # no wall ties the grid to the body: the offset moves the grid
-    shift = -dx * np.array(run.offset) if free else np.zeros(2)
-    grid = Grid(dx, solution.lower - below + shift, solution.upper + above + shift)
+    lower, upper = grid_box(solution, dx)
+    shift = -dx * np.array(run.offset) if moves_grid(solution) else np.zeros(2)
+    grid = Grid(dx, lower + shift, upper + shift)
     steps, dt = time_steps(solution, grid.dx, run.courant)
     lag = 0.5 * dt if run.staggered else 0.0
 
@@ -92,10 +92,18 @@ def setup(run: Run) -> tuple[Model, Comparison, int]:
 
 
 def laid_out(run: Run, solution: Any, exact: Manufactured) -> Layout:
-    """Layout of the particles of the run; of a free body the offset moves the grid instead."""
-    offset = CENTRED if solution.boundary == "free" else run.offset
+    """Layout of the particles of the run; for a free body that is no square the offset moves the grid."""
+    offset = CENTRED if moves_grid(solution) else run.offset
     layout: Layout = create(LAYOUTS, run.layout)(solution, exact, width(solution) / run.cells, run.ppc, offset)
     return layout
+
+
+def moves_grid(solution: Any) -> bool:
+    """Whether the offset moves the grid: no wall ties it to a free body.
+
+    A square keeps its edges on faces of cells: in one that an edge cuts, particles of classical MPM are inverted.
+    """
+    return solution.boundary == "free" and not isinstance(solution, Square)
 
 
 def velocity_gradient(exact: Manufactured, X: Floats, t: float, short: float) -> Floats:

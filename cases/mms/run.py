@@ -22,7 +22,7 @@ class Run(RunRecord):
     `method`, `solution`, `material`, `transfer` and `layout` are specifications: a name, or a name with parameters
     (`axis_aligned:A=0.01,phase=0.5`); `stress` is a word of solver/stress_update.py. `courant` is C dt / dx, with C the
     reference speed of the solution. `offset` shifts the particles in their cells, by fractions of their spacing, or, of
-    a body without walls, the grid by fractions of a cell.
+    a free body that is no square, the grid by fractions of a cell.
     Raises ValueError with one line for what no run has.
     """
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from mpm_verify.cases.mms.exact import manufactured
 from mpm_verify.cases.mms.run import Run
-from mpm_verify.cases.mms.time_step import time_steps, width
+from mpm_verify.mms.discretisation import time_steps, width
 from mpm_verify.mms.manufacture import Manufactured
 from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS, create, is_file, label, parameters_of, split
 

@@ -56,6 +56,29 @@ def write_series(
     return [*domains, *points, *series]
 
 
+def particles_file(path: Path, columns: Mapping[str, Array], dimension: int) -> None:
+    """Write particles as points of one file, in double precision: their columns (P,) are its point data.
+
+    Parameters
+    ----------
+    path
+        File, whose name ends in .vtu.
+    columns
+        Columns by name; x, y (and z) are the positions of the points.
+    dimension
+        Number of coordinates.
+
+    Raises
+    ------
+    StoreError
+        If the file cannot be written.
+    """
+    points = np.zeros((len(columns["x"]), 3))
+    points[:, :dimension] = np.column_stack([columns[axis] for axis in "xyz"[:dimension]])
+    cells = np.arange(len(points), dtype=np.int64)[:, None]
+    _write(path, meshio.Mesh(points, [("vertex", cells)], point_data=dict(columns)))
+
+
 def _fields(snapshot: Mapping[str, Array]) -> dict[str, Singles]:
     """Fields with the components that VTK expects; ValueError where the snapshot is not what it must be."""
     count = len(snapshot["x"]) if "x" in snapshot else 0
@@ -94,7 +117,11 @@ def _grid(path: Path, kind: str, corners: Array, fields: Mapping[str, Singles]) 
     count, each, _ = corners.shape
     points = _single(np.pad(corners.reshape(-1, 2), ((0, 0), (0, 1))))
     cells = np.arange(count * each, dtype=np.int64).reshape(count, each)
-    mesh = meshio.Mesh(points, [(kind, cells)], cell_data={key: [array] for key, array in fields.items()})
+    _write(path, meshio.Mesh(points, [(kind, cells)], cell_data={key: [array] for key, array in fields.items()}))
+
+
+def _write(path: Path, mesh: meshio.Mesh) -> None:
+    """Write a mesh, whole or not at all."""
     try:
         with TemporaryDirectory(dir=path.parent, prefix=".vtk") as scratch:  # meshio writes to nothing but a path
             mesh.write(Path(scratch) / path.name)

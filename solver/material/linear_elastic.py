@@ -7,7 +7,7 @@ of the strain. Use it at amplitudes of 1e-4 and below.
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 from numba import prange
 
@@ -43,6 +43,8 @@ class LinearElastic(Elastic):
     ValueError
         For a parameter that is out of range.
     """
+
+    formula: ClassVar[str] = "P*F^T/J with P = lam*tr(e)*I + 2*mu*e and e = (F + F^T)/2 - I"
 
     def energy(self, F: Any, log: Callable[[Any], Any]) -> Any:
         """Energy W = lam/2 tr(e)^2 + mu e:e per initial volume; F is 3 x 3, of numbers or symbols."""

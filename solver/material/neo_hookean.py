@@ -6,7 +6,7 @@ from sigma; manufactured solutions differentiate `energy`, so the source term ne
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numba import prange
@@ -62,6 +62,8 @@ class NeoHookean(Elastic):
     ValueError
         For a parameter that is out of range.
     """
+
+    formula: ClassVar[str] = "(mu*(F*F^T - I) + lam*ln(J)*I)/J"
 
     def energy(self, F: Any, log: Callable[[Any], Any]) -> Any:
         """Energy W per initial volume; F is 3 x 3, of numbers or symbols, `log` the logarithm for them."""

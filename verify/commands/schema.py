@@ -1,30 +1,46 @@
-"""`verify schema CASE`: JSON schema of what --json prints, derived from the records that are printed."""
+"""`verify schema CASE`: JSON schema of what --json prints, or of an exported case folder; derived from the records."""
 
 import json
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from mpm_verify.solver.plugins import CASES, available
-from mpm_verify.verify.choices import completion
+from mpm_verify.verify.choices import completing
 from mpm_verify.verify.terminal.output import printing
+
+FOLDER = "case-folder"
+
+
+def names() -> list[str]:
+    """Names of what has a schema."""
+    return [*available(CASES), FOLDER]
 
 
 def schema(
     case: Annotated[
         str,
-        typer.Argument(metavar="CASE", help=f"{', '.join(available(CASES))}.", autocompletion=completion(CASES)),
+        typer.Argument(metavar="CASE", help=f"{', '.join(names())}.", autocompletion=completing(names)),
     ] = "mms",
 ) -> None:
-    """Print the JSON schema (draft 2020-12) of the document that --json prints for a case."""
+    """Print the JSON schema (draft 2020-12) of what --json prints for a case; case-folder: of an exported case.json."""
     from mpm_verify.verify.run import usage
 
     with usage():
-        from mpm_verify.reports.export.document import schema as derived
-
         text = json.dumps(derived(case), indent=1)
     with printing():
         typer.echo(text)
+
+
+def derived(case: str) -> dict[str, Any]:
+    """Schema of a name. Raises ValueError for another one."""
+    if case == FOLDER:
+        from mpm_verify.reports.export.case_folder import schema as of_folder
+
+        return of_folder()
+    from mpm_verify.reports.export.document import schema as of_document
+
+    return of_document(case)
 
 
 def add(app: typer.Typer) -> None:

@@ -1,0 +1,30 @@
+"""Grid and time steps that a solution is run with: cells along the width, steps that fill the duration."""
+
+from math import ceil
+from typing import Any
+
+import numpy as np
+
+from mpm_verify.solver.state import Floats
+
+
+def width(solution: Any) -> float:
+    """Extent of the body's box along x, a length: the one that cells are counted along."""
+    return float(solution.upper[0] - solution.lower[0])
+
+
+def grid_box(solution: Any, dx: float) -> tuple[Floats, Floats]:
+    """Lower and upper corner of the grid, (d,) each: the body's box and whole cells of side dx beyond it."""
+    below, above = dx * np.ceil(np.broadcast_to(solution.margin, (2, len(solution.lower))) / dx)
+    return solution.lower - below, solution.upper + above
+
+
+def time_steps(solution: Any, dx: float, courant: float) -> tuple[int, float]:
+    """Number of steps of length courant dx / C at most that fill the duration, and their length."""
+    steps = ceil(solution.duration / (courant * dx / solution.C) * (1 - 1e-12))
+    return steps, solution.duration / steps
+
+
+def output_steps(steps: int, count: int) -> tuple[int, ...]:
+    """Output steps: `count` of the numbers 1 to `steps` at most, spread evenly, the last among them."""
+    return tuple(sorted({max(1, round(steps * k / count)) for k in range(1, count + 1)}))

@@ -1,0 +1,184 @@
+"""Content of an exported case: its record, particles, sources and values to check them against."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from mpm_verify.mms.derive import Fields, derive
+from mpm_verify.mms.discretisation import grid_box, output_steps, time_steps, width
+from mpm_verify.mms.export.language import Heading
+from mpm_verify.mms.export.languages import LANGUAGES
+from mpm_verify.mms.export.program import AXES, COMPONENTS, Program, programs
+from mpm_verify.mms.export.record import FORMAT, CaseRecord, MaterialRecord
+from mpm_verify.mms.export.selfcheck import at_position, checked, rows
+from mpm_verify.mms.manufacture import Manufactured, manufacture
+from mpm_verify.solver.layout import Layout
+from mpm_verify.solver.plugins import label, parameters_of
+from mpm_verify.solver.state import Floats
+
+Columns = dict[str, Floats]  # (n,) each, by name
+
+
+@dataclass(frozen=True)
+class Names:
+    """Specifications of a solution and a material, as they are told."""
+
+    solution: str
+    material: str
+
+
+@dataclass(frozen=True)
+class Exported:
+    """Content of a case.
+
+    Parameters
+    ----------
+    record
+        Content of case.json.
+    particles
+        Columns (P,) of the particles.
+    force, fields
+        Columns (R,) of values at some rows, and the tolerance of each.
+    sources
+        Texts by file names.
+    """
+
+    record: CaseRecord
+    particles: Columns
+    force: Columns
+    fields: Columns
+    sources: dict[str, str]
+
+
+def export(
+    names: Names, solution: Any, material: Any, cells: int, ppc: int, courant: float = 0.4, frames: int = 16
+) -> Exported:
+    """Make a case of a manufactured solution on one grid, for another solver.
+
+    Parameters
+    ----------
+    names
+        How solution and material are called.
+    solution, material
+        Solution, and constitutive model with an energy.
+    cells, ppc
+        Cells along the width of the body, and particles in a cell, a square number.
+    courant
+        C dt / dx, C the reference speed of the solution.
+    frames
+        Number of output steps.
+
+    Returns
+    -------
+    Exported
+        Record, particles, values to check against, sources.
+
+    Raises
+    ------
+    ValueError
+        For a material without an energy, a count of particles per cell that is not square, and a displacement with
+        functions that other languages do not have.
+    """
+    exact = manufacture(solution, material, material.rho0)
+    dx = width(solution) / cells
+    steps, dt = time_steps(solution, dx, courant)
+    layout = solution.layout(dx, ppc)
+    code = programs(exact.fields)
+    heading = Heading(f"{label(names.solution)} in {label(names.material)}", len(solution.lower), width(solution),
+                      ", ".join(COMPONENTS[len(solution.lower)]))  # fmt: skip
+    sources = {name: language.files(code, heading) for name, language in LANGUAGES.items()}
+    lower, upper = grid_box(solution, dx)
+    record = CaseRecord(
+        format=FORMAT, solution=label(names.solution), dimension=2 if len(solution.lower) == 2 else 3,
+        body="ring" if hasattr(solution, "inner") else "rectangle",
+        lower=numbers(solution.lower), upper=numbers(solution.upper),
+        grid_lower=numbers(lower), grid_upper=numbers(upper), cells=cells, dx=dx, ppc=ppc, particles=len(layout),
+        edges=edges(solution), duration=float(solution.duration), steps=steps, dt=dt, courant=courant,
+        frames=output_steps(steps, frames), t_half=-dt / 2, t_before=-dt,
+        material=MaterialRecord(label(names.material), constants(material), getattr(material, "formula", "")),
+        languages={name: tuple(files) for name, files in sources.items()},
+    )  # fmt: skip
+    force, fields = selfcheck(code, exact.fields, solution, material, layout)
+    texts = {file: text for files in sources.values() for file, text in files.items()}
+    return Exported(record, particles(exact, layout, material.rho0, dt), force, fields, texts)
+
+
+def numbers(values: Floats) -> tuple[float, ...]:
+    """Components as Python's numbers."""
+    return tuple(float(value) for value in values)
+
+
+def constants(material: Any) -> dict[str, float]:
+    """Parameters of a material that are numbers, and Lame's constants where it has them."""
+    named = [item.name for item in parameters_of(material).values()]
+    found = {name: getattr(material, name, None) for name in [*named, "lam", "mu"]}
+    return {name: float(value) for name, value in found.items() if isinstance(value, int | float)}
+
+
+def edges(solution: Any) -> dict[str, Any]:
+    """Kinds of the edges by their names: the sides of a rectangle, or the two circles of a ring."""
+    given = solution.boundary
+    if hasattr(solution, "inner"):
+        return {"inner": given, "outer": given}
+    kinds = [given] * 4 if isinstance(given, str) else list(given)
+    kinds = ["prescribed" if kind == "moving" else kind for kind in kinds]
+    return dict(zip(("left", "right", "bottom", "top"), kinds, strict=True))
+
+
+def named(letter: str, values: Floats, after: str = "") -> Columns:
+    """Columns of an array (n,...) by its components: x of a vector, xx of a tensor."""
+    n, d = len(values), values.shape[1]
+    if letter == "s":
+        ends: Sequence[str] = COMPONENTS[2 if d == 4 else 3]
+    else:
+        ends = AXES[:d] if values.ndim == 2 else [a + b for a in AXES[:d] for b in AXES[:d]]
+    return dict(zip((f"{letter}{end}{after}" for end in ends), values.reshape(n, -1).T, strict=True))
+
+
+def particles(exact: Manufactured, layout: Layout, rho0: float, dt: float) -> Columns:
+    """Columns (P,) of the particles: positions, and what moves at 0, -dt/2 (`_half`) and -dt (`_before`)."""
+    X = layout.X
+    found: Columns = {"id": np.arange(len(X), dtype=np.float64), **positions(X)}
+    found |= positions(exact.x(X, 0.0), "x")
+    found |= named("v", exact.v(X, 0.0)) | named("F", exact.F(X, 0.0)) | named("s", exact.sigma(X, 0.0))
+    found |= named("v", exact.v(X, -dt / 2), "_half")
+    found |= named("F", exact.F(X, -dt), "_before") | named("s", exact.sigma(X, -dt), "_before")
+    found |= {"V0": layout.V0, "m": rho0 * layout.V0}
+    for side in range(X.shape[1]):
+        found |= named(f"r{side + 1}", layout.r0[:, side])
+    return found
+
+
+def positions(values: Floats, first: str = "X") -> Columns:
+    """Columns of positions (n,d), X and Y or x and y."""
+    letters = AXES.upper() if first == "X" else AXES
+    return {letters[k]: values[:, k] for k in range(values.shape[1])}
+
+
+def selfcheck(
+    code: Sequence[Program], fields: Fields, solution: Any, material: Any, layout: Layout
+) -> tuple[Columns, Columns]:
+    """Columns (R,) of the force at some rows, and of the fields there, with the tolerance of each value."""
+    exact, known = derive(solution, material, material.rho0, exact=True), {program.name: program for program in code}
+    X, times = rows(layout, float(solution.duration))
+    found = {
+        name: checked(known[program], exact.full(expressions), fields, X, times)
+        for name, program, expressions in (
+            ("b", "body_force", exact.b), ("u", "displacement", exact.u), ("v", "velocity", exact.v),
+            ("F", "deformation", exact.F), ("s", "stress", exact.sigma),
+        )
+    }  # fmt: skip
+    at = {**positions(X), "t": times}
+    tensor = (len(X), *known["deformation"].shape)
+    force = at | named("b", found["b"].values) | named("tolerance_b", found["b"].tolerance)
+    beside = at_position(found["b"], fields, exact, X, times, width(solution))
+    force |= positions(X + found["u"].values, "x") | named("tolerance_at_b", beside.tolerance)
+    values: Columns = dict(at)
+    for name in "uvFs":
+        one = found[name]
+        shape = tensor if name == "F" else one.values.shape
+        values |= named(name, one.values.reshape(shape))
+        values |= {f"tolerance_{key}": column for key, column in named(name, one.tolerance.reshape(shape)).items()}
+    return force, values

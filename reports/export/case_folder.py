@@ -1,0 +1,167 @@
+"""Folder of an exported case: written for another solver, and read back.
+
+case.json and case.txt say what is to be run, particles.csv and .vtu hold the particles at the start, body_force.* and
+octave/ the force and the exact fields in other languages, selfcheck.csv and selfcheck_fields.csv values to check those
+with, each with its tolerance, and README.md says all of it in words.
+"""
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from pydantic import TypeAdapter, ValidationError
+
+from mpm_verify.cases.harness.store import Store
+from mpm_verify.mms.export.case import Exported
+from mpm_verify.mms.export.expected import Table, needed, table
+from mpm_verify.mms.export.record import CaseRecord, flat
+from mpm_verify.reports.export.vtk import particles_file
+from mpm_verify.solver.state import Floats
+
+TEMPLATES = Path(__file__).absolute().parent.parent / "templates"
+CASE, FLAT, PARTICLES, VTU, README = "case.json", "case.txt", "particles.csv", "particles.vtu", "README.md"
+FORCE, FIELDS = "selfcheck.csv", "selfcheck_fields.csv"
+
+
+def schema() -> dict[str, Any]:
+    """JSON schema (draft 2020-12) of case.json."""
+    found = TypeAdapter(CaseRecord).json_schema(mode="serialization")
+    for definition in (found, *found["$defs"].values()):
+        definition["additionalProperties"] = False
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **found, "title": "mpm-verify case folder"}
+
+
+def usable(folder: Path) -> None:
+    """Raise ValueError unless a case can be written there: nothing is there yet, or a folder that holds a case."""
+    if folder.is_symlink() and not folder.exists():
+        raise ValueError(f"{folder} is a link that leads nowhere; name another folder")
+    if folder.exists() and not folder.is_dir():
+        raise ValueError(f"{folder} is a file; name a folder")
+    if folder.exists() and any(folder.iterdir()):
+        try:
+            read(folder)
+        except ValueError:
+            raise ValueError(
+                f"{folder} holds something that is not an exported case; name a new folder, or an empty one"
+            ) from None
+
+
+def write(folder: Path, case: Exported) -> list[Path]:
+    """Write the files of a case; what another case of the same folder left is written over.
+
+    Parameters
+    ----------
+    folder
+        Folder, which is made where it is missing.
+    case
+        Content.
+
+    Returns
+    -------
+    list of Path
+        What was written.
+
+    Raises
+    ------
+    ValueError
+        If something else is there.
+    StoreError
+        If a file cannot be written.
+    """
+    usable(folder)
+    texts = {
+        FLAT: "".join(f"{name} {value}\n" for name, value in flat(case.record)),
+        PARTICLES: csv(case.particles), FORCE: csv(case.force), FIELDS: csv(case.fields), **case.sources,
+        README: words(case.record), CASE: json.dumps(asdict(case.record), indent=1) + "\n",
+    }  # fmt: skip
+    for parent in {Path(name).parent for name in texts}:
+        (folder / parent).mkdir(parents=True, exist_ok=True)
+    particles_file(folder / VTU, case.particles, case.record.dimension)
+    for name, text in texts.items():
+        Store.write(folder / name, text.encode())
+    return [folder / VTU, *(folder / name for name in texts)]
+
+
+def csv(columns: Mapping[str, Floats]) -> str:
+    """Text of a table: a header line, then numbers in 17 digits, which are read as the same doubles."""
+    rows = np.column_stack(list(columns.values()))
+    lines = [",".join(columns), *(",".join(f"{value:.17g}" for value in row) for row in rows)]
+    return "\n".join(lines) + "\n"
+
+
+def words(record: CaseRecord) -> str:
+    """Text of README.md."""
+    environment = Environment(loader=FileSystemLoader(TEMPLATES), undefined=StrictUndefined, keep_trailing_newline=True)
+    environment.trim_blocks = environment.lstrip_blocks = True
+    return environment.get_template("case_folder.md.j2").render(case=record)
+
+
+def read(folder: Path) -> CaseRecord:
+    """Record of a case. Raises ValueError with one line where the folder holds none, or a damaged one."""
+    if not folder.is_dir():
+        raise ValueError(f"{folder} is no folder; make one with `verify export SOLUTION --to {folder}`")
+    try:
+        text = (folder / CASE).read_bytes()
+    except OSError as error:
+        raise ValueError(f"{folder} holds no exported case: {CASE}: {error.strerror}") from None
+    try:
+        return TypeAdapter(CaseRecord).validate_json(text)
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = ".".join(map(str, first["loc"])) or "all of it"
+        raise ValueError(f"{folder / CASE} is damaged: {where}: {first['msg']}; export the case again") from None
+
+
+def table_of(folder: Path, record: CaseRecord) -> Table:
+    """Rows and right values that the sources of a folder are checked with. Raises ValueError with one line."""
+    force, fields = (
+        columns(folder / name, needed_columns)
+        for name, needed_columns in zip((FORCE, FIELDS), needed(record.dimension), strict=True)
+    )
+    try:
+        return table(record.dimension, force, fields)
+    except ValueError as error:
+        raise ValueError(f"{folder}: {error}") from None
+
+
+def columns(path: Path, needed: tuple[str, ...]) -> dict[str, Floats]:
+    """Columns of a table that was written here.
+
+    Parameters
+    ----------
+    path
+        File.
+    needed
+        Names of the columns that it must have.
+
+    Returns
+    -------
+    dict
+        Columns (n,) by name.
+
+    Raises
+    ------
+    ValueError
+        With one line, for a file that cannot be read, lacks a column, or holds something that is not a finite number.
+    """
+    try:
+        header, *lines = path.read_text(encoding="utf-8").splitlines() or [""]
+    except (OSError, UnicodeDecodeError) as error:
+        raise ValueError(f"{path} cannot be read: {getattr(error, 'strerror', None) or 'it is no text'}") from None
+    names = header.split(",")
+    missing = [name for name in needed if name not in names]
+    if missing or len(set(names)) < len(names):
+        raise ValueError(f"{path} is damaged: its first line has no column {(missing or ['of each name once'])[0]}")
+    if not lines:
+        raise ValueError(f"{path} is damaged: it has no rows")
+    try:
+        rows = np.array([[float(value) for value in line.split(",")] for line in lines])
+    except ValueError:
+        raise ValueError(f"{path} is damaged: a row is not made of {len(names)} numbers") from None
+    if rows.ndim != 2 or rows.shape[1] != len(names) or not np.isfinite(rows).all():
+        raise ValueError(f"{path} is damaged: a row is not made of {len(names)} finite numbers")
+    return dict(zip(names, rows.T, strict=True))

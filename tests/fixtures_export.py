@@ -1,0 +1,20 @@
+"""Exported cases for tests: made once in a process, and written to a folder."""
+
+from functools import cache
+from pathlib import Path
+
+from mpm_verify.mms.export.case import Exported
+from mpm_verify.reports.export.case_folder import write
+from mpm_verify.verify.commands.export import made
+
+
+@cache
+def exported(solution: str, cells: int = 4, ppc: int = 4, material: str = "") -> Exported:
+    """Content of a case."""
+    return made(solution, material, cells, ppc, 0.4, 16)
+
+
+def folder_of(solution: str, folder: Path, **more: int) -> Path:
+    """Folder of a case, written anew."""
+    write(folder, exported(solution, **more))
+    return folder
