@@ -135,7 +135,11 @@ def called(asked: str) -> int:
         code = complain("stopped; what was finished is stored, and the same command goes on from there", STOPPED)
     except SystemExit as end:  # of the completion; and 1, which would read as a verdict, where nobody reads a help text
         code = 0 if end.code == 1 else end.code
-    except Exception:
+    except Exception as error:
+        from mpm_verify.solver.own_file import blamed
+
+        if line := blamed(error):
+            return complain(line)
         with suppress(OSError, ValueError, AttributeError):
             import traceback
 
