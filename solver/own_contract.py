@@ -91,7 +91,8 @@ def kernel(plugin: Any, name: str, path: Path, signature: Any, called: str) -> N
         value = value.__func__
     overloads = getattr(value, "nopython_signatures", ())
     if [(one.args, one.return_type) for one in overloads] != [(signature.args, signature.return_type)]:
+        mark = f"kernel({called})"
         raise OwnFileError(
-            f"{line(path, value)}: {name} must be a kernel of the signature {called}: write @kernel({called}) before "
-            f"it, and {name} = staticmethod({name}) in the class"
+            f"{line(path, value)}: {name} must be a kernel of the signature {called}: write @{mark} before it, and "
+            f"{name} = staticmethod({name}) in the class"
         )
