@@ -36,7 +36,8 @@ SCHEME = {"transfer": "flip", "stress": "usl", "layout": "uniform"}  # the one t
 def title(runs: Sequence[Run]) -> str:
     """Title, such as `CPDI and MPM against the manufactured solution axis_aligned`."""
     methods, solutions = (tuple(dict.fromkeys(getattr(run, key) for run in runs)) for key in ("method", "solution"))
-    named = " and ".join(m.upper() for m in methods) if len(methods) < 4 else f"{len(methods)} methods"
+    words = [label(method) if is_file(method) else method.upper() for method in methods]
+    named = " and ".join(words) if len(words) < 4 else f"{len(words)} methods"
     several = "solutions" if len(solutions) > 1 else "solution"
     return f"{named} against the manufactured {several} {', '.join(map(label, solutions))}"
 
