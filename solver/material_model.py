@@ -4,6 +4,7 @@ A model is of one of two forms: a function of F with its `energy` (solver/elasti
 `respond` (solver/rate_material.py). What a model does not have is None, or empty.
 """
 
+from abc import abstractmethod
 from collections.abc import Callable
 from typing import Any, ClassVar
 
@@ -76,6 +77,7 @@ class Material:
     def start(self, particles: Particles) -> None:
         """Write what the model keeps of the path to `particles` at the start of a run: a function of F, nothing."""
 
+    @abstractmethod
     def update(self, particles: Particles, dt: float) -> None:
         """Write particles.sigma (P,4) at the end of a step, from the new F.
 
@@ -88,6 +90,7 @@ class Material:
         """
         raise NotImplementedError
 
+    @abstractmethod
     def wave_speed(self, s: float | None = None) -> float:
         """Speed of the fastest wave.
 

@@ -25,6 +25,10 @@ from mpm_verify.solver.source_hash import PACKAGE, file_hash, find
 PREFIX = "own_"  # the package of a user's file begins so
 
 
+class OwnFileError(ValueError):
+    """Error in a user's file, in one line that begins with the file's name, and its line where there is one."""
+
+
 @dataclass(frozen=True)
 class Held:
     """A module that was executed, the text of each file when it was, and the hash of what it derived from."""
@@ -104,17 +108,40 @@ def without_exit() -> None:
 
 
 def guarded(path: Path, action: Callable[[], Any]) -> Any:
-    """Do what runs a user's code; whatever that raises becomes a ValueError of one line, with the line of the file."""
+    """Do what runs a user's code; whatever that raises becomes an OwnFileError, with the line of the file.
+
+    Want of memory is no fault of the file, and is left as it is.
+    """
     try:
         return action()
     except SyntaxError as error:
         file = path.with_name(Path(error.filename).name) if error.filename else path
-        raise ValueError(f"{file}, line {error.lineno}: {error.msg}") from None
+        where = f"{file}, line {error.lineno}" if error.lineno else str(file)
+        raise OwnFileError(f"{where}: {error.msg}") from None
+    except (OwnFileError, MemoryError):
+        raise
     except (Exception, SystemExit) as error:
-        frames = traceback.extract_tb(error.__traceback__)
-        lines = [f.lineno for f in frames if f.filename == str(path.resolve())]
-        where = f"{path}, line {lines[-1]}" if lines else str(path)
-        raise ValueError(f"{where}: {type(error).__name__}: {shortened(str(error))}") from error
+        told = blamed(error).replace(f"{path.resolve()}, line", f"{path}, line", 1)
+        raise OwnFileError(told or f"{path}: {said(error)}") from error
+
+
+def blamed(error: BaseException) -> str:
+    """Line that names the file and line of a user's in which an error was raised; empty where none was executed.
+
+    The traceback says so, and is not there any more in another process: ask where the error was raised.
+    """
+    if isinstance(error, OwnFileError):
+        return str(error)
+    if isinstance(error, SystemError) and error.__cause__:  # of a kernel that another has called by its address
+        return blamed(error.__cause__)
+    mine = {file for name, module in list(sys.modules.items()) if _is_family(name) for file in vars(module)["files"]}
+    frames = [frame for frame in traceback.extract_tb(error.__traceback__) if frame.filename in mine]
+    return f"{frames[-1].filename}, line {frames[-1].lineno}: {said(error)}" if frames else ""
+
+
+def said(error: BaseException) -> str:
+    """Kind and message of an error in one line."""
+    return ": ".join(filter(None, [type(error).__name__, shortened(str(error))]))
 
 
 def shortened(value: Any) -> str:
@@ -136,6 +163,11 @@ def _beside(name: str) -> list[ModuleType]:
     return [m for key, m in list(sys.modules.items()) if key.startswith(f"{family}.") and getattr(m, "__file__", None)]
 
 
+def _is_family(name: str) -> bool:
+    """Whether a module is the package of a user's file."""
+    return name.startswith(PREFIX) and hasattr(sys.modules.get(name), "files") and "." not in name
+
+
 def _content(file: str) -> bytes:
     try:
         return Path(file).read_bytes()
@@ -146,11 +178,14 @@ def _content(file: str) -> bytes:
 def _executed(path: Path, file: Path, files: dict[str, bytes]) -> ModuleType:
     """Module of a file; it and those that it imports from beside it, now or later, write their texts to `files`."""
     try:
-        file.read_text(encoding="utf-8")
+        text = file.read_text(encoding="utf-8")
     except OSError as error:
-        raise ValueError(f"{path}: {(error.strerror or str(error)).lower()}") from None
+        raise OwnFileError(f"{path}: {(error.strerror or str(error)).lower()}") from None
     except UnicodeDecodeError:
-        raise ValueError(f"{path} is not a text") from None
+        raise OwnFileError(f"{path} is not a text") from None
+    if "\0" in text:
+        line = text[: text.index("\0")].count("\n") + 1
+        raise OwnFileError(f"{path}, line {line}: a byte that is zero, which no text has; save the file as UTF-8")
     family = f"{PREFIX}{hashlib.sha256(str(file).encode()).hexdigest()[:16]}"
     for name in [name for name in sys.modules if name == family or name.startswith(f"{family}.")]:
         del sys.modules[name]

@@ -1,20 +1,20 @@
 """Plug-ins: each is a file whose name is the word on the command line; its class has that name in CamelCase.
 
 A plug-in may be a user's file, path/to/own.py or path/to/own.py:key=value; of a case, see the contract in
-cases/harness/contract.py. A package with a module `_own` makes a class of it in its own way, `_own.load(path)`; of
-the others the file holds the class.
+cases/harness/contract.py. A package may have a module `_own`: its `load(path)` makes the class in its own way, where
+otherwise the file holds it, and its `check(plugin, path)` says what is wrong with a plug-in before anything runs.
 """
 
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import Field, fields, is_dataclass
+from dataclasses import MISSING, Field, fields, is_dataclass
 from difflib import get_close_matches
 from importlib import import_module
 from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from mpm_verify.solver.own_file import module_of
+from mpm_verify.solver.own_file import OwnFileError, guarded, module_of
 from mpm_verify.solver.source_hash import TOP, find
 
 METHODS, MATERIALS, SOLUTIONS, CASES = (
@@ -101,13 +101,18 @@ def load(package: str, name: str) -> Any:
         If there is none; it lists the choices, or says what the user's file lacks.
     """
     if is_file(name) and package in CONTRACTS:
-        own = find(f"{package}._own")
-        return import_module(f"{package}._own").load(Path(name)) if own else own_class(package, Path(name))
+        make = _own(package, "load")
+        return make(Path(name)) if make else own_class(package, Path(name))
     if name not in available(package):
         choices = ", ".join(available(package)) + (", or give a file: path/to/own.py" if package in CONTRACTS else "")
         near = meant(name, available(package))
         raise ValueError(f"no {KINDS.get(package, 'plug-in')} {name!r}{near}; choose from {choices}")
     return getattr(import_module(f"{package}.{name}"), camel(name))
+
+
+def _own(package: str, name: str) -> Any:
+    """Function of a package for users' files, None where it has none."""
+    return getattr(import_module(f"{package}._own"), name, None) if find(f"{package}._own") else None
 
 
 def meant(word: str, known: Iterable[str]) -> str:
@@ -119,25 +124,27 @@ def meant(word: str, known: Iterable[str]) -> str:
 def own_class(package: str, path: Path) -> Any:
     """Class of a user's file: the one named as the file, or else the only one that keeps the contract.
 
-    Raises ValueError that says what is missing.
+    Raises OwnFileError that says what is missing, of the class named so or of the only one that has a part of it.
     """
     module, contract = module_of(path), CONTRACTS[package]
     found = [c for c in vars(module).values() if isinstance(c, type) and c.__module__ == module.__name__]
     named = [c for c in found if c.__name__ == camel(path.stem)]
     chosen = named or [c for c in found if not lacking(c, contract)]
+    chosen = chosen or [c for c in found if len(lacking(c, contract)) < len(contract)]
     kind = f"a {KINDS[package]} has {', '.join(contract)}"
     if len(chosen) != 1:
         several = f"the classes {', '.join(c.__name__ for c in chosen)}: name one {camel(path.stem)}"
-        raise ValueError(f"{path} has {several if chosen else f'no class {camel(path.stem)}'}; {kind}")
+        raise OwnFileError(f"{path} has {several if chosen else f'no class {camel(path.stem)}'}; {kind}")
     if missing := lacking(chosen[0], contract):
-        raise ValueError(f"{path}: the class {chosen[0].__name__} has no {', no '.join(missing)}; {kind}")
+        raise OwnFileError(f"{path}: the class {chosen[0].__name__} has no {', no '.join(missing)}; {kind}")
     return chosen[0]
 
 
 def lacking(plugin: type, contract: Sequence[str]) -> list[str]:
-    """Names that the contract asks for and a class has neither as an attribute nor as a field."""
+    """Names that the contract asks for and a class has neither as a field nor as an attribute that does something."""
     known = {item.name for item in fields(plugin)} if is_dataclass(plugin) else set()
-    return [name for name in contract if not hasattr(plugin, name) and name not in known]
+    there = {name for name in contract if not getattr(getattr(plugin, name, None), "__isabstractmethod__", False)}
+    return [name for name in contract if name not in known and not (name in there and hasattr(plugin, name))]
 
 
 def is_file(specification: str) -> bool:
@@ -204,7 +211,28 @@ def create(package: str, specification: str) -> Any:
         if field.name in given:
             raise ValueError(f"{name}: {key} is given twice")
         given[field.name] = number(name, key, value) if field.type in (float, "float") else absolute(value)
-    return plugin(**given)
+    return own(package, Path(name), plugin, given) if is_file(name) else plugin(**given)
+
+
+def own(package: str, path: Path, plugin: Any, given: dict[str, float | str]) -> Any:
+    """Plug-in of a user's file, checked once for each time that the file was executed. Raises ValueError."""
+    needed = {key: item for key, item in parameters_of(plugin).items() if item.init and item.name not in given}
+    bare = [key for key, item in needed.items() if item.default is MISSING and item.default_factory is MISSING]
+    if bare:
+        raise OwnFileError(f"{path}: {bare[0]} has no value; write {path}:{bare[0]}=..., or a default in the file")
+    try:
+        made = plugin(**given)
+    except (TypeError, AttributeError, ArithmeticError, LookupError, RuntimeError, AssertionError):  # not ValueError:
+        made = guarded(path, lambda: plugin(**given))  # that of a parameter out of range says it well
+    known = (package, plugin, *sorted(given.items()))
+    if known not in _checked:
+        if check := _own(package, "check"):
+            check(made, path)
+        _checked.add(known)
+    return made
+
+
+_checked: set[tuple[Any, ...]] = set()  # plug-ins of users' files, with their parameters
 
 
 def parameters_of(plugin: Any) -> "dict[str, Field[Any]]":

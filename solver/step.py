@@ -115,13 +115,18 @@ def particles_to_grid(model: Model) -> None:
 
 
 def update_stress(model: Model, x: Floats) -> None:
-    """Update the stress by the strain of the step, or by what smoothing makes of it in cells of x, where it began."""
+    """Update the stress by the strain of the step, or by what smoothing makes of it in cells of x, where it began.
+
+    Raises ValueError for a material that leaves a stress of another shape.
+    """
     p = model.particles
     F_smoothed = model.smoothing.strain(model, x) if model.smoothing else None
     if F_smoothed is None:
         model.material.update(p, model.dt)
     else:
         cast("RateMaterial", model.material).update(p, model.dt, F_smoothed)
+    if p.sigma.shape != (len(p), 4):  # a kernel would read beyond it
+        raise ValueError(f"update leaves particles.sigma with the shape {p.sigma.shape}, which must be {(len(p), 4)}")
 
 
 def equation_of_motion(model: Model) -> None:

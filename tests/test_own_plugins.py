@@ -103,7 +103,8 @@ METHOD = "a method has support, order, fill"
         ("x = 1\n", f"has no class Own; {METHOD}"),
         ("from mpm_verify.solver.basis.mpm import Mpm\n", f"has no class Own; {METHOD}"),  # defined elsewhere
         ("class Own:\n    order = 2\n", f": the class Own has no support, no fill; {METHOD}"),
-        ("class A:\n    order = 2\n", f"has no class Own; {METHOD}"),
+        ("class A:\n    order = 2\n", f": the class A has no support, no fill; {METHOD}"),
+        ("class A:\n    order = 2\nclass B:\n    order = 1\n", f"has the classes A, B: name one Own; {METHOD}"),
         (
             "class A:\n    support = order = fill = 2\nclass B(A): pass\n",
             f"has the classes A, B: name one Own; {METHOD}",

@@ -140,7 +140,10 @@ def called(asked: str) -> int:
     except SystemExit as end:  # of the completion; and 1, which would read as a verdict, where nobody reads a help text
         code = 0 if end.code == 1 else end.code
     except Exception as error:
-        return defect(error)
+        from mpm_verify.solver.own_file import blamed
+
+        line = blamed(error)
+        return complain(line) if line else defect(error)
     return code if isinstance(code, int) else 0
 
 

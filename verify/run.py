@@ -49,12 +49,17 @@ class Settings:
 
 @contextmanager
 def usage() -> Iterator[None]:
-    """Turn what is wrong with the input or the store into one line and exit code 2."""
+    """Turn what is wrong with the input or the store into one line and exit code 2.
+
+    What a user's file prints inside goes to standard error.
+    """
     from mpm_verify.cases.harness.runner import RunnerError
     from mpm_verify.cases.harness.store import StoreError
+    from mpm_verify.verify.terminal.output import aside
 
     try:
-        yield
+        with aside():
+            yield
     except SystemExit as error:
         raise typer.TyperException(
             f"a file of yours ended the program, with {error.code!r}; a study ends with its own exit code; stored runs "
@@ -126,7 +131,7 @@ def of_case(room: str, record: "Record") -> Any | None:
 
 def export(record: "Record", settings: Settings, page: Path | None) -> None:
     """Write what is asked for, and print."""
-    from mpm_verify.verify.terminal.output import printing
+    from mpm_verify.verify.terminal.output import aside, printing
 
     if settings.junit:
         from mpm_verify.reports.export.junit import write_junit
@@ -137,11 +142,15 @@ def export(record: "Record", settings: Settings, page: Path | None) -> None:
 
         with settings.summary.open("a", encoding="utf-8") as file:
             file.write(markdown(record))
-    with printing():
-        if settings.json_output:
-            from mpm_verify.reports.export.document import document
+    text = ""
+    if settings.json_output:
+        from mpm_verify.reports.export.document import document
 
-            typer.echo(document(record, page, more_of(record)))
+        with aside():
+            text = document(record, page, more_of(record))
+    with printing():
+        if text:
+            typer.echo(text)
         elif settings.show:
             settings.show(record, page)
         else:

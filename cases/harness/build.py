@@ -1,5 +1,6 @@
 """Construction of a study from a case, values of its axes and a number of replicates, checked before anything runs."""
 
+import json
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
@@ -9,10 +10,11 @@ from typing import Any, cast, get_type_hints
 
 from pydantic import TypeAdapter, ValidationError
 
-from mpm_verify.cases.harness.contract import Case, case_named
+from mpm_verify.cases.harness.contract import Case, case_named, invalid
 from mpm_verify.cases.harness.refinement import complete, refines
 from mpm_verify.cases.harness.study import QuantityPlan, RunRecord, Study, head
-from mpm_verify.solver.plugins import label, meant
+from mpm_verify.cases.judging.records import Expectation
+from mpm_verify.solver.plugins import create, is_file, label, meant
 
 Values = Mapping[str, Sequence[Any]]
 MOST = 10_000  # runs of a study, without those that its judgement adds
@@ -149,7 +151,7 @@ def _runs(asked: Asked) -> tuple[tuple[Any, ...], list[QuantityPlan[Any]]]:
         raise ValueError(f"{case.name} has no refinement to repeat; leave replicates = {asked.replicates} out")
     usual = case.quick if asked.quick else case.axes
     values = {key: list(dict.fromkeys(asked.values.get(key) or usual.get(key) or ())) for key in known}
-    values = {key: chosen for key, chosen in values.items() if chosen}
+    values = {key: [read(case.Run, key, value) for value in chosen] for key, chosen in values.items() if chosen}
     times: list[float] = []
     if case.quantities and refines(case.Run):
         if len(values.get("offset", ())) > 1:
@@ -170,6 +172,7 @@ def _runs(asked: Asked) -> tuple[tuple[Any, ...], list[QuantityPlan[Any]]]:
     points = [dict(zip(order, point, strict=True)) for point in product(*(values[key] for key in order))]
     runs = tuple(dict.fromkeys(make(case, point) for point in points))
     smaller = [make(case, {**point, "courant": courant}) for courant in times for point in points]
+    own_plugins(runs)
     case.check((*runs, *smaller))
     if not (case.quantities and refines(case.Run)):
         return tuple(dict.fromkeys(case.companions(runs))), []
@@ -179,21 +182,44 @@ def _runs(asked: Asked) -> tuple[tuple[Any, ...], list[QuantityPlan[Any]]]:
     return complete(runs, plans, times, asked.replicates), plans
 
 
+def own_plugins(runs: Sequence[RunRecord]) -> None:
+    """Make the plug-ins that come from users' files, which checks them. Raises ValueError."""
+    for item in fields(runs[0]) if runs else ():
+        named = {getattr(run, item.name) for run in runs} if item.metadata.get("plugins") else set()
+        for specification in sorted(one for one in named if is_file(one)):
+            create(item.metadata["plugins"], specification)
+
+
 def quantity_plans(case: Case, run: RunRecord) -> list[QuantityPlan[Any]]:
     """Plans of a refinement: every quantity in every norm, judged where an expectation is registered."""
     found, multiple = [], case.multiple(run)
     for quantity in case.quantities:
         for norm in case.norms:
-            expectation = case.expectation(run, quantity, norm)
+            expectation = _registered(case, case.expectation(run, quantity, norm))
             judged = expectation is not None and (quantity, norm) in case.judged
             found.append(QuantityPlan(run, quantity, norm, judged, expectation, multiple))
     return found
 
 
+def _registered(case: Case, expectation: Expectation | None) -> Expectation | None:
+    """Expectation of a case, checked for the types of its numbers. Raises ValueError."""
+    if expectation is None:
+        return None
+    try:
+        TypeAdapter(Expectation).validate_json(json.dumps(vars(expectation), default=repr), strict=True)
+    except ValidationError as error:
+        raise ValueError(f"{case.name}: expectation returns an Expectation with {invalid(error)}") from None
+    return expectation
+
+
 def make(case: Case, values: Mapping[str, Any]) -> RunRecord:
     """Make one run. Raises ValueError with one line for a value that it cannot have."""
     checked = {key: read(case.Run, key, value) for key, value in values.items()}
-    return case.Run(**case.canonical(checked))
+    named = case.canonical(checked)
+    known = [item.name for item in fields(case.Run)]
+    if unknown := [key for key in named if key not in known]:
+        raise ValueError(f"{case.name}: canonical returns {unknown[0]!r}, and Run has the fields {', '.join(known)}")
+    return case.Run(**named)
 
 
 def read(run: type[RunRecord], key: str, value: Any) -> Any:
@@ -202,8 +228,7 @@ def read(run: type[RunRecord], key: str, value: Any) -> Any:
     try:
         return TypeAdapter(hint).validate_python(tuple(value) if isinstance(value, list) else value, strict=True)
     except ValidationError as error:
-        says = error.errors()[0]["msg"]
-        raise ValueError(f"{key} = {value!r}: {says[0].lower()}{says[1:]}") from None
+        raise ValueError(f"{key} = {value!r}: {invalid(error).partition(': ')[2]}") from None
 
 
 def axes(runs: Sequence[RunRecord]) -> tuple[str, ...]:

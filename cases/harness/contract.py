@@ -18,7 +18,7 @@ and, where they apply, instead of the defaults of Case:
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, is_dataclass
 from functools import cache
 from importlib import import_module
 from inspect import isfunction
@@ -26,14 +26,27 @@ from pathlib import Path
 from types import ModuleType, SimpleNamespace
 from typing import Any
 
-from pydantic import TypeAdapter
+from pydantic import PydanticUserError, TypeAdapter, ValidationError
 
 from mpm_verify.cases.harness.study import REFINED, ResultRecord, RunRecord, Study
 from mpm_verify.cases.judging.records import Expectation
-from mpm_verify.solver.own_file import guarded, module_of
+from mpm_verify.solver.own_file import OwnFileError, guarded, module_of, said, shortened
 from mpm_verify.solver.plugins import CASES, available, is_file, meant
 
 REFINES = ("method", "ppc", *REFINED)  # fields of a Run whose errors are judged on refinement
+GIVES: Mapping[str, tuple[Callable[[Any], bool], str]] = {  # what a function of a user's case returns
+    "title": (lambda found: isinstance(found, str) and found != "", "a text"),
+    "expectation": (lambda found: found is None or isinstance(found, Expectation), "an Expectation or None"),
+    "multiple": (lambda found: isinstance(found, int) and found > 0, "a whole number above zero"),
+    "parts": (
+        lambda found: _listed(found) and all(hasattr(one, "contract") for one in found),
+        "Asked in a list",
+    ),
+    "companions": (lambda found: _listed(found, RunRecord), "runs in a list"),
+    "canonical": (lambda found: isinstance(found, dict), "the dictionary of values"),
+    "examine": (lambda found: found is None or hasattr(found, "checks"), "an Analysis"),
+    "execute": (lambda found: isinstance(found, tuple) and len(found) == 2, "(Result, arrays)"),
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,22 +179,80 @@ def _own(name: str, module: ModuleType) -> Case:
     """A case of a user's file, its records named after the file; what its functions raise is told with the line."""
     lacking = [word for word in ("Run", "Result", "title", "execute") if not hasattr(module, word)]
     if lacking:
-        raise ValueError(f"{name} has no {', no '.join(lacking)}; a case has Run, Result, title and execute")
+        raise OwnFileError(f"{name} has no {', no '.join(lacking)}; a case has Run, Result, title and execute")
     for word, parent in {"Run": RunRecord, "Result": ResultRecord}.items():
         kind = getattr(module, word)
         if not (isinstance(kind, type) and issubclass(kind, parent) and kind.__module__ == module.__name__):
-            raise ValueError(f"{name}: {word} must be a class below {parent.__name__} that is defined in this file")
-    known = {item.name for item in fields(module.Run)}
+            raise OwnFileError(f"{name}: {word} must be a class below {parent.__name__} that is defined in this file")
+        if not is_dataclass(kind) or "__dataclass_fields__" not in vars(kind):
+            raise OwnFileError(f"{name}: write @dataclass(frozen=True) before the class {word}")
+    known = [item.name for item in fields(module.Run)]
     if hasattr(module, "QUANTITIES") and (missing := [word for word in REFINES if word not in known]):
-        raise ValueError(f"{name}: a case with QUANTITIES refines, and its Run has no field {', no '.join(missing)}")
+        raise OwnFileError(f"{name}: a case with QUANTITIES refines, and its Run has no field {', no '.join(missing)}")
+    _check_axes(name, module, known)
+    _check_judged(name, module)
     module.Run.case = name
-    held = {word: told(name, value) if isfunction(value) else value for word, value in vars(module).items()}
+    held = {word: told(name, word, value) if isfunction(value) else value for word, value in vars(module).items()}
     return Case(name, SimpleNamespace(**held))
 
 
-def told(name: str, function: Callable[..., Any]) -> Callable[..., Any]:
-    """A function of a user's file that raises ValueError with one line, whatever it raises."""
-    return lambda *given: guarded(Path(name), lambda: function(*given))
+def _check_axes(name: str, module: ModuleType, known: Sequence[str]) -> None:
+    """Check that AXES and QUICK of a user's case hold values of fields of its Run."""
+    for word in ("AXES", "QUICK"):
+        held = getattr(module, word, {})
+        if not isinstance(held, Mapping):
+            raise OwnFileError(f"{name}: {word} = {shortened(held)} must be a dictionary, such as {{'cells': (8, 16)}}")
+        for key, values in held.items():
+            if key not in known:
+                raise OwnFileError(
+                    f"{name}: {word} has {key!r}, which is no field of Run{meant(str(key), known)}; it has "
+                    f"{', '.join(known)}"
+                )
+            if not isinstance(values, tuple | list) or not values:
+                raise OwnFileError(f"{name}: {word} has {key!r}: {shortened(values)}; write values, such as (8, 16)")
+
+
+def _check_judged(name: str, module: ModuleType) -> None:
+    """Check that QUANTITIES and NORMS of a user's case are words, and that JUDGED has pairs of them."""
+    words = {word: getattr(module, word, ()) for word in ("QUANTITIES", "NORMS")}
+    for word, held in words.items():
+        if not isinstance(held, tuple | list) or not all(isinstance(item, str) for item in held):
+            raise OwnFileError(f"{name}: {word} = {shortened(held)} must be words with a comma, such as ('u',)")
+    judged = getattr(module, "JUDGED", ())
+    for pair in judged if isinstance(judged, tuple | list) else [judged]:
+        if not isinstance(pair, tuple) or len(pair) != 2:
+            raise OwnFileError(f"{name}: JUDGED = {shortened(judged)} must be pairs, such as (('u', 'rms'),)")
+        for item, (word, held) in zip(pair, words.items(), strict=True):
+            if item not in held:
+                raise OwnFileError(f"{name}: JUDGED has {pair!r}, and {word} has {', '.join(held) or 'nothing'}")
+    if words["QUANTITIES"] and not words["NORMS"]:
+        raise OwnFileError(f"{name}: a case with QUANTITIES has NORMS too, such as ('rms',)")
+
+
+def _listed(found: Any, kind: type = object) -> bool:
+    """Whether this is a list or tuple of one kind."""
+    return isinstance(found, list | tuple) and all(isinstance(one, kind) for one in found)
+
+
+def told(name: str, word: str, function: Callable[..., Any]) -> Callable[..., Any]:
+    """Function of a user's file that raises OwnFileError with one line, whatever it raises or returns."""
+    right, spelled = GIVES.get(word, (lambda found: True, ""))
+
+    def call(*given: Any) -> Any:
+        found = guarded(Path(name), lambda: function(*given))
+        if not right(found):
+            raise OwnFileError(f"{name}: {word} must return {spelled}, not {shortened(found)}")
+        return found
+
+    return call
+
+
+def invalid(error: ValidationError) -> str:
+    """First thing that is wrong with a record: `order = 'x': input should be a valid number`."""
+    first = error.errors()[0]
+    where, says = ".".join(map(str, first["loc"])), first["msg"].removeprefix("Value error, ")
+    value = f"{where} = {shortened(repr(first['input']))}" if where else "its values"
+    return f"{value}: {says[0].lower()}{says[1:]}"
 
 
 def adapters(name: str) -> tuple[TypeAdapter[Any], TypeAdapter[Any]]:
@@ -192,4 +263,9 @@ def adapters(name: str) -> tuple[TypeAdapter[Any], TypeAdapter[Any]]:
 @cache
 def _adapters(case: Case) -> tuple[TypeAdapter[Any], TypeAdapter[Any]]:
     result: type[ResultRecord[Any]] = case.module.Result
-    return TypeAdapter(Study[case.Run]), TypeAdapter(result)  # type: ignore[name-defined]
+    try:
+        return TypeAdapter(Study[case.Run]), TypeAdapter(result)  # type: ignore[name-defined]
+    except (PydanticUserError, NameError) as error:
+        if not is_file(case.name):
+            raise
+        raise OwnFileError(f"{case.name}: Run or Result has a field that cannot be stored: {said(error)}") from error

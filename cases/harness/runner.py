@@ -3,20 +3,23 @@
 import multiprocessing
 import os
 import signal
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from dataclasses import fields
 from multiprocessing.queues import SimpleQueue as Queue
 from os import _exit  # before a user's file is executed, see solver/own_file.py
 from pathlib import Path
 from typing import Any, ClassVar, TypeVar
 
-from mpm_verify.cases.harness.contract import case_named
+from mpm_verify.cases.harness.contract import Case, case_named
 from mpm_verify.cases.harness.store import Store, StoreError
-from mpm_verify.solver.plugins import is_file
+from mpm_verify.solver.own_file import OwnFileError, blamed, said, shortened
+from mpm_verify.solver.plugins import absolute, is_file, split
 
 T = TypeVar("T")
 Run = Any  # of any case: digest, case, cost; Results and Studies likewise
@@ -58,11 +61,51 @@ def perform(run: Run, digest: str, folder: Path, threads: int) -> Result:
     use_threads(threads)
     if run.digest != digest:
         raise another(run)
-    result, arrays = case_named(run.case).execute(run, Ticker(digest))
-    if result.digest != digest:
-        raise another(run)
-    Store(folder, run.case).put(result, arrays)
+    try:
+        result, arrays = case_named(run.case).execute(run, Ticker(digest))
+        check_result(case_named(run.case), run, result, arrays)
+        if result.digest != digest:
+            raise another(run)
+        Store(folder, run.case).put(result, arrays)
+    except (RunnerError, StoreError, MemoryError):
+        raise
+    except (Exception, SystemExit) as error:
+        line = blame(run, error)
+        if not line:
+            raise
+        raise OwnFileError(line) from error
     return result
+
+
+def blame(run: Run, error: BaseException) -> str:
+    """Line that an error of a run has, where a user's file raised it or the run has one; empty for one of ours alone.
+
+    The traceback is asked, which does not go from one process to another.
+    """
+    if line := blamed(error):
+        return line
+    if is_file(run.case):
+        return f"{run.case}: {error if isinstance(error, ValueError) else said(error)}"
+    named = [getattr(run, item.name) for item in fields(run) if item.metadata.get("plugins")]
+    files = ", ".join(absolute(split(one)[0]) for one in named if is_file(one))
+    return f"{files}: what it gives cannot be worked with, {said(error)}" if files else ""
+
+
+def check_result(case: Case, run: Run, result: Result, arrays: Any) -> None:
+    """Raise ValueError, in one line, for what is no Result of this run, or does not hold what is judged."""
+    if not isinstance(result, case.module.Result) or not isinstance(arrays, dict):
+        raise ValueError(f"execute must return (Result, arrays), not {shortened((result, arrays))}")
+    if result.run != run:
+        raise ValueError(f"execute returns the Result of another run, {shortened(result.run)}; write run=run")
+    if result.status == "failed":
+        if result.failure is None:
+            raise ValueError("execute returns a Result that failed and has no failure; write failure=Failure(...)")
+        return
+    for quantity in case.quantities:
+        for norm in case.norms:
+            if norm not in result.errors.get(quantity, {}):
+                held = shortened(result.errors)
+                raise ValueError(f"execute returns a Result without errors[{quantity!r}][{norm!r}]; it has {held}")
 
 
 def another(run: Run) -> RunnerError:
@@ -147,8 +190,9 @@ def run_study(
     except MemoryError as error:
         raise RunnerError("not enough memory; try --jobs 1 or fewer cells; stored runs are kept") from error
     if defects:
+        defects.sort(key=lambda one: isinstance(one[1], OwnFileError))  # ours first
         (run, defect), more = defects[0], f", and in {len(defects) - 1} more" if defects[1:] else ""
-        if is_file(run.case):
+        if isinstance(defect, OwnFileError):
             raise RunnerError(f"{defect}; this was the run {run}{more}; the other runs are stored") from defect
         raise RunnerError(f"a defect of verify in {run}{more}: {defect!r}; the other runs are stored", True) from defect
     return stored(study, store)
@@ -205,6 +249,9 @@ def begin(parent: int, news: "Queue[tuple[str, float]]", case: str) -> None:
 
     A worker that outlived its parent would do a run that the parent's successor does too.
     """
+    sys.stdout = sys.stderr  # what a user's file prints is no part of a document
+    with suppress(OSError):
+        os.dup2(2, 1)
     Ticker.tell = staticmethod(news.put)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C goes to the whole group; the parent ends its workers
 

@@ -21,7 +21,7 @@ from zipfile import BadZipFile
 import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
-from mpm_verify.cases.harness.contract import adapters
+from mpm_verify.cases.harness.contract import adapters, invalid
 from mpm_verify.cases.harness.study import FORMAT, Arrays
 from mpm_verify.solver.plugins import CASES, available, is_file
 
@@ -59,7 +59,10 @@ def case_of(folder: Path) -> str:
     if found != FORMAT:
         raise StoreError(OTHER.format(path, found))
     if is_file(str(case)) and not Path(str(case)).exists():
-        raise StoreError(f"{path} is of the case in {case}, which is not there any more")
+        raise StoreError(
+            f"{path} is of the case in {case}, which is not there any more; put the file back there, or run it where "
+            "it is now with another --out"
+        )
     if case not in available(CASES) and not is_file(str(case)):
         known = ", ".join(available(CASES))
         raise StoreError(f"{path} is of the case {case}, and this version has {known}; use another --out folder")
@@ -84,23 +87,33 @@ class Store:
             self.study()
         elif (self.folder / "report.html").exists():
             raise StoreError(f"{self.folder} holds a page of something else; give another --out folder")
-        self.write(self.folder / "study.json", self._text(study))
+        self.write(self.folder / "study.json", self._text(study, adapters(self.case)[0]))
 
     def study(self) -> Any:
         """Study of this folder."""
         return self._read(self.folder / "study.json", adapters(self.case)[0])
 
     def put(self, result: Any, arrays: Arrays) -> None:
-        """Write arrays, then the Result: the JSON file is what makes a run stored."""
-        path = self.runs / result.digest
+        """Write arrays, then the Result: the JSON file is what makes a run stored.
+
+        Raises ValueError, and writes nothing, for what could not be read again.
+        """
+        path, text = self.runs / result.digest, self._text(result, adapters(self.case)[1])
         buffer = io.BytesIO()
         np.savez(buffer, allow_pickle=False, **arrays)
         self.write(path.with_suffix(".npz"), buffer.getvalue())
-        self.write(path.with_suffix(".json"), self._text(result))
+        self.write(path.with_suffix(".json"), text)
 
-    def _text(self, record: Any) -> bytes:
-        """A record as it is stored, with the case that it is of."""
-        return json.dumps({"case": self.case} | asdict(record), indent=1).encode()
+    def _text(self, record: Any, adapter: TypeAdapter[Any]) -> bytes:
+        """A record as it is stored, with the case that it is of. Raises ValueError for one that cannot be read."""
+        try:
+            text = json.dumps({"case": self.case} | asdict(record), indent=1).encode()
+            adapter.validate_python(json.loads(text))
+        except TypeError as error:
+            raise ValueError(f"{type(record).__name__} cannot be stored: {error}; write numbers and words") from error
+        except ValidationError as error:
+            raise ValueError(f"{type(record).__name__} cannot be stored: {invalid(error)}") from None
+        return text
 
     def get(self, digest: str) -> Any:
         """Stored Result of that digest, None if the run is still to be done."""

@@ -43,7 +43,8 @@ def title(runs: Sequence[Run]) -> str:
     if any(run.solver for run in runs):
         programs = dict.fromkeys(program(run.solver) for run in runs)
         return f"{' and '.join(programs)} against the manufactured solution {', '.join(map(label, solutions))}"
-    named = " and ".join(m.upper() for m in methods) if len(methods) < 4 else f"{len(methods)} methods"
+    words = [label(method) if is_file(method) else method.upper() for method in methods]
+    named = " and ".join(words) if len(words) < 4 else f"{len(words)} methods"
     several = "solutions" if len(solutions) > 1 else "solution"
     return f"{named} against the manufactured {several} {', '.join(map(label, solutions))}"
 

@@ -18,7 +18,7 @@ from typing import Any
 
 from mpm_verify.cases.judging.records import Expectation
 from mpm_verify.cases.wave_bar.run import AXES, QUICK, Result, Run
-from mpm_verify.solver.plugins import MATERIALS, METHODS, TRANSFERS, create, label, split
+from mpm_verify.solver.plugins import MATERIALS, METHODS, TRANSFERS, create, is_file, label, split
 from mpm_verify.solver.plugins import canonical as canonical_name
 
 __all__ = ["AXES", "QUICK", "Result", "Run"]
@@ -31,7 +31,7 @@ QUANTITIES, NORMS, JUDGED = ("frequency",), ("relative",), (("frequency", "relat
 
 def title(runs: Sequence[Run]) -> str:
     """Title of a study of bars."""
-    methods = dict.fromkeys(label(run.method).upper() for run in runs)
+    methods = dict.fromkeys(label(m) if is_file(m) else m.upper() for m in (run.method for run in runs))
     return f"Frequency of the first axial mode of a bar: {', '.join(methods)}"
 
 

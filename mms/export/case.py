@@ -8,7 +8,8 @@ import numpy as np
 
 from mpm_verify.mms.derive import Fields, derive
 from mpm_verify.mms.discretisation import grid_box, output_steps, time_steps, width
-from mpm_verify.mms.export.languages import LANGUAGES, Heading
+from mpm_verify.mms.export.language import Heading
+from mpm_verify.mms.export.languages import LANGUAGES
 from mpm_verify.mms.export.program import AXES, COMPONENTS, Program, programs
 from mpm_verify.mms.export.record import FORMAT, CaseRecord, MaterialRecord
 from mpm_verify.mms.export.selfcheck import at_position, checked, rows

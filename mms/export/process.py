@@ -17,7 +17,7 @@ LAST = 2000  # characters of what it said that are kept
 
 @dataclass(frozen=True)
 class Ended:
-    """How a program ended: its exit code, negative for a signal, None where its time was up; what it said last."""
+    """End of a program: its exit code, negative for a signal, None where its time was up; what it said last."""
 
     code: int | None
     said: str

@@ -81,11 +81,15 @@ def precisely(fields: Fields, expressions: Sequence[sp.Expr]) -> Any:
 
 
 def errors(program: Program, fields: Fields, X: Floats, t: float) -> list[float]:
-    """Bounds of the errors of the results of a program, in units of one rounding."""
+    """Bounds of the errors of the results of a program, in units of one rounding. Raises ValueError without one."""
     write = Notation()
     statements = [(str(name), write(e)) for name, e in program.statements]
     known = {str(symbol): value for symbol, value in zip((*fields.X, fields.t), (*X, t), strict=True)}
-    return [one.error for one in evaluate(statements, [write(e) for e in program.results], known)]
+    try:
+        found = evaluate(statements, [write(e) for e in program.results], known)
+    except (ArithmeticError, ValueError) as error:
+        raise ValueError(f"{program.name} cannot be evaluated at X = {X.tolist()}, t = {t:g}: {error}") from None
+    return [one.error for one in found]
 
 
 def at_position(force: Checked, fields: Fields, exact: Fields, X: Floats, times: Floats, width: float) -> Checked:

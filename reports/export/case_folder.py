@@ -14,7 +14,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.mms.export.case import Exported
-from mpm_verify.mms.export.checking import Table, needed, table
+from mpm_verify.mms.export.expected import Table, needed, table
 from mpm_verify.mms.export.files import CASE, FIELDS, FORCE, files
 from mpm_verify.mms.export.record import CaseRecord
 from mpm_verify.reports.export.vtk import particles_file

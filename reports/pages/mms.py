@@ -1,11 +1,14 @@
 """Page, figures and tables of an MMS study; from what is stored alone, and the same bytes each time."""
 
 import re
+import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 from matplotlib.figure import Figure
 
 from mpm_verify.cases.harness.store import Store, StoreError
+from mpm_verify.cases.harness.study import Arrays
 from mpm_verify.cases.mms.run import QUANTITIES, Run
 from mpm_verify.reports import words
 from mpm_verify.reports.components import audited, show, show_axes, show_graded, show_runs
@@ -22,6 +25,7 @@ from mpm_verify.reports.figures.particles import particles
 from mpm_verify.reports.figures.position import position
 from mpm_verify.reports.figures.time_step import time_step
 from mpm_verify.reports.frames import Record
+from mpm_verify.reports.sentences.remarks import left_out
 from mpm_verify.reports.tables import mms as tables
 from mpm_verify.reports.tables.cost import compares
 from mpm_verify.solver.plugins import label
@@ -87,7 +91,8 @@ def _solution(record: Record, solution: str, folder: Path, field: tuple[int, int
     drawn = convergence(record, solution)
     add("figure1", drawn["figure1"], "")
     chosen = [choose(record, method, solution, *field) for method in methods(record)]
-    fields = [_field(record, run, add) for run in chosen if run]
+    there, unread = _arrays(record, [run for run in chosen if run])
+    fields = [_field(run, arrays, add) for run, arrays in there]
     several = particles(record, solution)
     images = {
         "time": _maybe(add, "time_step", time_step(record, solution), TIME),
@@ -111,6 +116,7 @@ def _solution(record: Record, solution: str, folder: Path, field: tuple[int, int
             "Local orders of u in rms; the table below holds the numbers.",
         ),
         "fields": [image for image in fields if image],
+        "unread": left_out("particles", ", ".join(unread)) if unread else "",
         "blind": audited.blind(record, solution),
         "seen": audited.seen(record, solution),
     }
@@ -129,12 +135,22 @@ def _maybe(add: Add, name: str, figure: Figure | None, alt: str) -> Image | None
     return add(name, figure, alt) if figure else None
 
 
-def _field(record: Record, run: Run, add: Add) -> Image | None:
-    """Figure of the error field of one run; None where its particles are not stored, or cannot be read."""
-    try:
-        arrays = record.arrays(run)
-    except StoreError:
-        return None
+def _arrays(record: Record, runs: Sequence[Run]) -> tuple[list[tuple[Run, Arrays]], list[str]]:
+    """Particles of runs, and the files of those that cannot be read, which is said on standard error too."""
+    found: list[tuple[Run, Arrays]] = []
+    unread: list[str] = []
+    for run in runs:
+        try:
+            found.append((run, record.arrays(run)))
+        except StoreError as error:
+            unread.append(f"runs/{record.results[run.digest].digest}.npz")
+            if sys.stderr is not None:  # print() would take standard output instead
+                print(f"verify: {error}", file=sys.stderr)
+    return found, unread
+
+
+def _field(run: Run, arrays: Arrays, add: Add) -> Image | None:
+    """Figure of the error field of one run; None where no error of its particles is stored."""
     if not ({"corners"} <= arrays.keys() or {"x", "F", "r0"} <= arrays.keys()) or "error_u" not in arrays:
         return None
     most = words.sci(float(arrays["error_u"].max()))

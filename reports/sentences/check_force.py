@@ -22,7 +22,7 @@ def sentence(checked: Checked) -> str:
 
 
 def ending(ended: Ended | None) -> str:
-    """How a program ended, with the first line of its error output that names an error."""
+    """End of a program in words, with the first line of its error output that names an error."""
     if ended is None or ended.code is None:
         return "its time was up"
     lines = [line.strip() for line in ended.said.splitlines() if line.strip()]

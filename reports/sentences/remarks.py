@@ -53,9 +53,14 @@ def parameter(examination: Examination, name: str) -> str:
 
 
 def unread(n: Numbers) -> str:
-    """Sentence on the figures that are left out."""
+    """Sentence on the figures of curves that are left out."""
+    return left_out("curves", str(n["files"]))
+
+
+def left_out(what: str, files: str) -> str:
+    """Sentence on figures that are left out, as the files of what they show cannot be read."""
     return (
-        f"The curves in {n['files']} cannot be read, and their figures are left out; once they are deleted with their "
+        f"The {what} in {files} cannot be read, and their figures are left out; once they are deleted with their "
         ".json files, the same command computes those runs again."
     )
 

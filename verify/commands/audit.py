@@ -38,9 +38,10 @@ def audit(
 
     with usage():
         name, result = examine(solution, material)
+        text = json.dumps(document(solution, name, result), indent=2, ensure_ascii=False) if json_output else ""
     with printing():
-        if json_output:
-            typer.echo(json.dumps(document(solution, name, result), indent=2, ensure_ascii=False))
+        if text:
+            typer.echo(text)
         else:
             show(f"{solution} in {name}", result)
 

@@ -3,9 +3,23 @@
 import os
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, redirect_stdout
+from typing import Any
 
 import typer
+
+_ours: list[Any] = []  # standard output of the command, where sys.stdout is another
+
+
+@contextmanager
+def aside() -> Iterator[None]:
+    """Send to standard error what is printed inside, as by a user's file, but for what is printed by printing()."""
+    _ours.append(_ours[-1] if _ours else sys.stdout)
+    try:
+        with redirect_stdout(sys.stderr):
+            yield
+    finally:
+        _ours.pop()
 
 
 @contextmanager
@@ -15,9 +29,10 @@ def printing() -> Iterator[None]:
     An error that names a file has nothing to do with standard output, and is left as it is.
     """
     try:
-        yield
-        if sys.stdout is not None:
-            sys.stdout.flush()
+        with redirect_stdout(_ours[-1] if _ours else sys.stdout):
+            yield
+            if sys.stdout is not None:
+                sys.stdout.flush()
     except BrokenPipeError:
         silence()
     except OSError as error:
