@@ -16,7 +16,8 @@ from jsonschema import Draft202012Validator, ValidationError
 from mpm_verify.cases.mms.execute import setup
 from mpm_verify.cases.mms.run import Run
 from mpm_verify.mms.discretisation import output_steps
-from mpm_verify.reports.export.case_folder import CASE, FIELDS, FORCE, PARTICLES, VTU, columns, read, schema, write
+from mpm_verify.mms.export.files import CASE, FIELDS, FORCE, PARTICLES
+from mpm_verify.reports.export.case_folder import VTU, columns, read, schema, write
 from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS, available, create
 
 TOP = Path(__file__).resolve().parent.parent

@@ -182,19 +182,19 @@ def with_value(value: float, column: int = 3) -> Callable[[Path], None]:
 
 BAD: dict[str, tuple[Callable[[Path], None], FailureKind, str]] = {
     "empty": (broken(""), FailureKind.UNREADABLE, "cannot be read"),
-    "a header alone": (broken(HEAD + "\n"), FailureKind.PARTICLES, "0 of the 64 particles"),
+    "a header alone": (broken(HEAD + "\n"), FailureKind.OTHER_PARTICLES, "0 of the 64 particles"),
     "no numbers": (broken("id,x,y\n" + "a,b,c\n" * 64), FailureKind.UNREADABLE, "cannot be read"),
     "binary": (lambda path: path.write_bytes(b"\x00\xff\xfe" * 99) and None, FailureKind.UNREADABLE, "cannot be read"),
     "ragged": (broken("id,x,y\n0,1,2\n1,2,3,4,5\n"), FailureKind.UNREADABLE, "cannot be read"),
-    "half of the particles": (cut(slice(0, 32)), FailureKind.PARTICLES, "32 of the 64"),
-    "one particle lost": (cut(slice(1, None)), FailureKind.PARTICLES, "63 of the 64"),
-    "ids twice": (with_value(0.0, 0), FailureKind.PARTICLES, "63 of the 64"),
-    "an id that is none": (with_value(999.0, 0), FailureKind.PARTICLES, "63 of the 64"),
+    "half of the particles": (cut(slice(0, 32)), FailureKind.OTHER_PARTICLES, "32 of the 64"),
+    "one particle lost": (cut(slice(1, None)), FailureKind.OTHER_PARTICLES, "63 of the 64"),
+    "ids twice": (with_value(0.0, 0), FailureKind.OTHER_PARTICLES, "63 of the 64"),
+    "an id that is none": (with_value(999.0, 0), FailureKind.OTHER_PARTICLES, "63 of the 64"),
     "not a number": (with_value(np.nan), FailureKind.NOT_FINITE, "not finite"),
     "infinite": (with_value(np.inf), FailureKind.NOT_FINITE, "not finite"),
     "no x": (broken("id,y\n" + "".join(f"{k},0\n" for k in range(64))), FailureKind.NO_COLUMN, "no column x"),
     "no name": (broken("x,y\n" + "0,0\n" * 64), FailureKind.NO_COLUMN, "no column id"),
-    "other positions": (broken("X,Y,x,y\n" + "9,9,9,9\n" * 64), FailureKind.PARTICLES, "0 of the 64"),
+    "other positions": (broken("X,Y,x,y\n" + "9,9,9,9\n" * 64), FailureKind.OTHER_PARTICLES, "0 of the 64"),
 }
 
 
@@ -324,7 +324,7 @@ def test_a_repaired_program_is_run_again_and_judged(verify: Call, tmp_path: Path
     code, told = study(verify, tmp_path, PERFECT, "--courant", "0.4,0.2", "--solver-version", "same")
     assert code == 0, told["verdicts"]
     (verdict,) = (v for v in told["verdicts"] if v["quantity"] == "u")
-    assert verdict["order"] == pytest.approx(2.0, abs=0.03)
+    assert verdict["observed"] == pytest.approx(2.0, abs=0.03)
     assert verdict["verdict"] == "PASS"
 
 

@@ -102,6 +102,8 @@ def check_result(case: Case, run: Run, result: Result, arrays: Any) -> None:
             raise ValueError("execute returns a Result that failed and has no failure; write failure=Failure(...)")
         return
     for quantity in case.quantities:
+        if run.again and quantity not in result.errors:  # what somebody else's solver does not write
+            continue
         for norm in case.norms:
             if norm not in result.errors.get(quantity, {}):
                 held = shortened(result.errors)

@@ -18,7 +18,7 @@ CAUSES = {
     FailureKind.NO_ANSWER: "the solver has not written a file",
     FailureKind.UNREADABLE: "the solver has written a file that cannot be read",
     FailureKind.NO_COLUMN: "the solver has left out a column",
-    FailureKind.PARTICLES: "the solver has written other particles than it was given",
+    FailureKind.OTHER_PARTICLES: "the solver has written other particles than it was given",
     FailureKind.NOT_RUN: "not run yet",
     FailureKind.OSCILLATES: "the values go to and fro",
     FailureKind.NO_ERROR: "no error",
@@ -51,13 +51,15 @@ def theirs(failure: Failure) -> str:
         signal = n["code"] < 0
         said = f": {failure.names['said']}" if "said" in failure.names else ""
         return f"the solver ended with {'signal' if signal else 'exit code'} {abs(n['code']):g}{said}"
+    if not file:
+        return ""
     if k is FailureKind.NO_ANSWER:
         return f"the solver has not written {file}"
     if k is FailureKind.UNREADABLE:
         return f"{file} cannot be read"
     if k is FailureKind.NO_COLUMN:
         return f"{file} has no column {failure.names['column']}"
-    if k is FailureKind.PARTICLES:
+    if k is FailureKind.OTHER_PARTICLES:
         return f"{file} has {n['found']:g} of the {n['expected']:g} particles that were given"
     return ""
 

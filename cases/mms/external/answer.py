@@ -174,15 +174,15 @@ def matched(columns: dict[str, Floats], X: Floats, spacing: float, file: str, st
     """Row of each particle of the case, (P,). Raises RunFailed where rows are missing, too many or others."""
     rows = len(columns["x"])
     if rows != len(X):
-        raise RunFailed(FailureKind.PARTICLES, step, numbers={"found": rows, "expected": len(X)}, names={"file": file})
+        raise RunFailed(
+            FailureKind.OTHER_PARTICLES, step, numbers={"found": rows, "expected": len(X)}, names={"file": file}
+        )
     if "id" in columns:
         given = columns["id"]
         order = np.argsort(given, kind="stable")
         if not np.array_equal(given[order], np.arange(len(X))):
             same = len(np.unique(given[np.isin(given, np.arange(len(X)))]))
-            raise RunFailed(
-                FailureKind.PARTICLES, step, numbers={"found": same, "expected": len(X)}, names={"file": file}
-            )
+            raise others(same, len(X), file, step)
         return order
     if not {"X", "Y"} <= columns.keys():
         raise RunFailed(FailureKind.NO_COLUMN, step, names={"file": file, "column": "id"})
@@ -195,8 +195,16 @@ def matched(columns: dict[str, Floats], X: Floats, spacing: float, file: str, st
     near = distance < NEAR * spacing
     same = len(np.unique(order[near]))
     if same != len(X):
-        raise RunFailed(FailureKind.PARTICLES, step, numbers={"found": same, "expected": len(X)}, names={"file": file})
+        raise RunFailed(
+            FailureKind.OTHER_PARTICLES, step, numbers={"found": same, "expected": len(X)}, names={"file": file}
+        )
     return order
+
+
+def others(found: int, expected: int, file: str, step: int) -> RunFailed:
+    """Error of an answer that does not have the particles that were given."""
+    numbers = {"found": float(found), "expected": float(expected)}
+    return RunFailed(FailureKind.OTHER_PARTICLES, step, numbers=numbers, names={"file": file})
 
 
 def rounding(values: Any) -> float:

@@ -28,8 +28,8 @@ def parts(command: str) -> list[str]:
 def version(command: str) -> str:
     """Hash of the program and of all files among its arguments, 12 hex digits."""
     found = hashlib.sha256()
-    for place, word in enumerate(parts(command)):
-        file = Path(shutil.which(word) or word) if place == 0 else Path(word)
+    for number, word in enumerate(parts(command)):
+        file = Path(shutil.which(word) or word) if number == 0 else Path(word)
         found.update(b"\0" + word.encode())
         if file.is_file():
             with suppress(OSError):

@@ -31,8 +31,8 @@ ROUND = float(np.finfo(np.float64).eps)
 def execute(run: Run, tick: Callable[[float], None] = lambda fraction: None) -> tuple[Result, Arrays]:
     """Run the program to its end, or to where it fails: that is a Result too. `tick` hears the fraction of frames."""
     case = exported(run)
-    with tempfile.TemporaryDirectory(prefix="mpm-verify-") as place:
-        folder, out = Path(place) / "case", Path(place) / "out"
+    with tempfile.TemporaryDirectory(prefix="mpm-verify-") as top:
+        folder, out = Path(top) / "case", Path(top) / "out"
         out.mkdir()
         for name, text in files(case).items():
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
