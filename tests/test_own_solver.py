@@ -16,9 +16,10 @@ from mpm_verify.cases.harness.build import Asked, build
 from mpm_verify.cases.mms.external import command
 from mpm_verify.cases.mms.external.answer import Frame, Levels, levels, read
 from mpm_verify.cases.mms.external.errors import compare
+from mpm_verify.cases.mms.external.hints import hints
 from mpm_verify.cases.mms.run import Run
 from mpm_verify.mms.manufacture import manufacture
-from mpm_verify.reports.sentences import failures
+from mpm_verify.reports.sentences import failures, own_solver
 from mpm_verify.solver.failure import FailureKind, RunFailed
 from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS, create
 from mpm_verify.solver.state import Floats
@@ -347,7 +348,7 @@ DIGITS = {
     "clamped_shear:G=1e-6": (7.253e-8, 3.208e-8, 1.787e-8, 7.873e-9, 4.415e-9),
     "bump": (4.139e-8, None, 1.079e-8, None, 2.737e-9),
 }
-NEEDS = {"python": None, "cpp": "c++", "fortran": "gfortran", "julia": "julia"}
+NEEDS = {"python": "", "cpp": "c++"}
 
 
 @pytest.mark.slow
@@ -368,3 +369,47 @@ def test_the_examples_have_the_digits_of_other_programs(
     for error, digits in zip(sorted(found, reverse=True), DIGITS[solution], strict=True):
         assert digits is None or error == pytest.approx(digits, rel=2e-4)
     assert code == 0
+
+
+# ---- hints
+
+STEP = 2e-4  # so long that a step is seen
+
+
+def frames_of(change: Callable[[int], dict[str, Floats]]) -> dict[int, Frame]:
+    """Exact frames with some fields changed."""
+
+    def fields(step: int) -> dict[str, Floats]:
+        t = step * STEP
+        exact = {"x": EXACT.x(X, t), "v": EXACT.v(X, t - STEP / 2), "F": EXACT.F(X, t).reshape(-1, 4)}
+        return exact | {"sigma": EXACT.sigma(X, t)} | change(step)
+
+    return {step: Frame(fields(step)) for step in (10, 20, 35)}
+
+
+ONE = np.array([1.0, 0.0, 0.0, 1.0])
+FAULTS: dict[str, tuple[Callable[[int], dict[str, Floats]], float]] = {
+    "still": (lambda step: {"x": X}, 0.0),
+    "shift": (lambda step: {"x": EXACT.x(X, (step - 2) * STEP)}, 2.0),
+    "x_is_u": (lambda step: {"x": EXACT.u(X, step * STEP)}, 1.0),
+    "v_lag": (lambda step: {"v": EXACT.v(X, step * STEP)}, 0.0),
+    "F_lag": (lambda step: {"F": EXACT.F(X, (step - 1) * STEP).reshape(-1, 4)}, 1.0),
+    "F_transposed": (lambda step: {"F": EXACT.F(X, step * STEP).transpose(0, 2, 1).reshape(-1, 4)}, 0.0),
+    "F_twice": (lambda step: {"F": ONE + 2 * (EXACT.F(X, step * STEP).reshape(-1, 4) - ONE)}, 0.0),
+    "sigma_sign": (lambda step: {"sigma": -EXACT.sigma(X, step * STEP)}, 0.0),
+}
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_a_fault_is_hinted_at(name: str) -> None:
+    change, value = FAULTS[name]
+    found = hints(EXACT, X, STEP, frames_of(change), USUAL)
+    assert found == {name: pytest.approx(value, abs=1e-9)}
+    assert own_solver.hint(name, value)
+
+
+def test_no_fault_is_hinted_at_where_there_is_none() -> None:
+    """Of a right answer, and of one with errors of five per cent that no other reading mends."""
+    assert hints(EXACT, X, STEP, frames_of(lambda step: {}), USUAL) == {}
+    wrong = frames_of(lambda step: {"x": X + 1.05 * EXACT.u(X, step * STEP)})
+    assert hints(EXACT, X, STEP, wrong, USUAL) == {}

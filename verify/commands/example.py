@@ -11,8 +11,6 @@ FOLDER = Path(__file__).absolute().parents[2] / "cases" / "mms" / "external" / "
 LANGUAGES = {  # what is typed beside --solver, and what it needs
     "python": "python {here}/solver.py {{case}} {{out}}",
     "cpp": "{here}/run.sh {{case}} {{out}}",
-    "fortran": "{here}/run.sh {{case}} {{out}}",
-    "julia": "julia {here}/solver.jl {{case}} {{out}}",
 }
 
 
@@ -42,7 +40,7 @@ def example(
             target = to / source.name.removesuffix(".in")
             target.write_text(source.read_text(encoding="utf-8"), encoding="utf-8")
             target.chmod(0o755 if target.suffix == ".sh" else 0o644)
-    here = to if to.is_absolute() else Path(f"./{to}")
+    here = to if to.is_absolute() else f"./{to}"
     with printing():
         typer.echo(f"{to}: {', '.join(sorted(file.name for file in to.iterdir()))}")
         command = LANGUAGES[language].format(here=here)

@@ -15,7 +15,7 @@ from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.cases.judging.stall import Stall
 from mpm_verify.reports import words
 from mpm_verify.reports.frames import Record
-from mpm_verify.reports.sentences import commands, stalls, verdicts
+from mpm_verify.reports.sentences import commands, own_solver, stalls, verdicts
 from mpm_verify.solver.plugins import label
 
 STYLES = {"PASS": "bold green", "FAIL": "bold red", "INCONCLUSIVE": "bold yellow", "ERROR": "bold magenta"}
@@ -49,6 +49,8 @@ def show(record: Record, page: Path | None, console: Console | None = None) -> N
     for finding in found:
         if finding.stall:
             out.print(stall(record, finding, finding.stall))
+    for line in own_solver.hints(record.results.values()):
+        out.print(f"HINT  {line}", markup=False)
     if not any(f.plan.judged for f in found):
         theirs = any(getattr(run, "solver", "") for run in study.runs)
         hint = "; say what is expected: --order 2, or --as METHOD" if theirs else ""

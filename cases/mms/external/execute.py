@@ -15,6 +15,7 @@ from mpm_verify.cases.mms.exact import audited, manufactured
 from mpm_verify.cases.mms.external.answer import Levels, levels, read
 from mpm_verify.cases.mms.external.command import filled
 from mpm_verify.cases.mms.external.errors import Found, compare
+from mpm_verify.cases.mms.external.hints import hints
 from mpm_verify.cases.mms.run import Result, Run
 from mpm_verify.mms.export.case import Exported, Names, export
 from mpm_verify.mms.export.files import files
@@ -45,16 +46,17 @@ def execute(run: Run, tick: Callable[[float], None] = lambda fraction: None) -> 
         started = time.perf_counter()
         ended = run_program(words, out, run.time_limit, into=LOG, memory=room, look=look, here=Path.cwd())
         wall = time.perf_counter() - started
-        failure, found, told = None, Found({}, {}, {}), Levels()
+        failure, found, told, why = None, Found({}, {}, {}), Levels(), dict[str, float]()
         log = last_lines(out / LOG, ended)
         try:
             check(ended, run.time_limit, log)
             told = levels(out)
-            found = answered(run, case, out, told)
+            found, why = answered(run, case, out, told)
         except RunFailed as error:
             failure = error.failure
         result = result_of(run, case, found, failure)
-        result = replace(result, wall_s=wall, log=log, exit_code=ended.code, told=told.version)
+        result = replace(result, wall_s=wall, log=log, exit_code=ended.code, told=told.version,
+                         values=why)  # fmt: skip
     return result, {}
 
 
@@ -75,12 +77,13 @@ def exported(run: Run) -> Exported:
     return export(names, solution, material, run.cells, run.ppc, run.courant, FRAMES)
 
 
-def answered(run: Run, case: Exported, out: Path, told: Levels) -> Found:
-    """Errors of the frames. Raises RunFailed for an answer that is missing or cannot be read."""
+def answered(run: Run, case: Exported, out: Path, told: Levels) -> tuple[Found, dict[str, float]]:
+    """Errors of the frames, and hints. Raises RunFailed for an answer that is missing or cannot be read."""
     X = np.stack([case.particles["X"], case.particles["Y"]], axis=-1)
     spacing = case.record.dx / np.sqrt(run.ppc)
     frames = {step: read(out, step, X, spacing) for step in case.record.frames}
-    return compare(manufactured(run.solution, run.material), X, case.particles["V0"], case.record.dt, frames, told)
+    exact, dt = manufactured(run.solution, run.material), case.record.dt
+    return compare(exact, X, case.particles["V0"], dt, frames, told), hints(exact, X, dt, frames, told)
 
 
 def result_of(run: Run, case: Exported, found: Found, failure: Failure | None) -> Result:
