@@ -19,7 +19,7 @@ FINEST = 128  # cells of the finest usual grid
 QUARTER = 0.25  # cells: of 4 particles in a cell, each is a quarter of a cell from its face
 
 
-class SpotCode(StrEnum):
+class BlindSpotCode(StrEnum):
     """Codes of what a study of a solution may be blind to."""
 
     SHEAR = "shear"  # off-diagonal components of F
@@ -45,28 +45,28 @@ class SpotCode(StrEnum):
 class BlindSpot:
     """One thing a study of the solution cannot see (`blind`), or does see, with the numbers that say so."""
 
-    code: SpotCode
+    code: BlindSpotCode
     blind: bool
     numbers: Numbers = field(default_factory=dict)
 
 
-ALWAYS = (BlindSpot(SpotCode.ORDERS, True), BlindSpot(SpotCode.CONSTANTS, True))
+ALWAYS = (BlindSpot(BlindSpotCode.ORDERS, True), BlindSpot(BlindSpotCode.CONSTANTS, True))
 SEEN_BY = {  # solutions of the library that see what others are blind to
-    SpotCode.SHEAR: ("clamped_shear", "generalised_vortex", "swirl"),
-    SpotCode.ROTATION: ("clamped_shear", "generalised_vortex", "swirl"),
-    SpotCode.ORDER: ("clamped_shear", "generalised_vortex", "swirl"),
-    SpotCode.SPIN: ("clamped_shear", "generalised_vortex", "swirl"),
-    SpotCode.VOLUME: ("axis_aligned", "clamped_shear", "swirl"),
-    SpotCode.GRADIENT: ("axis_aligned", "clamped_shear"),
-    SpotCode.START: ("axis_aligned:phase=0.785", "clamped_shear"),
-    SpotCode.VELOCITY: ("axis_aligned", "clamped_shear"),
-    SpotCode.MIRROR: ("axis_aligned", "clamped_shear"),
-    SpotCode.AMPLITUDE: ("axis_aligned", "clamped_shear"),
-    SpotCode.CROSSING: ("axis_aligned", "clamped_shear"),
-    SpotCode.WALLS: ("axis_aligned",),
-    SpotCode.LOAD: ("axis_aligned", "clamped_shear"),
-    SpotCode.STRESS: ("axis_aligned", "clamped_shear"),
-    SpotCode.PLANE: ("axis_aligned", "clamped_shear"),
+    BlindSpotCode.SHEAR: ("clamped_shear", "generalised_vortex", "swirl"),
+    BlindSpotCode.ROTATION: ("clamped_shear", "generalised_vortex", "swirl"),
+    BlindSpotCode.ORDER: ("clamped_shear", "generalised_vortex", "swirl"),
+    BlindSpotCode.SPIN: ("clamped_shear", "generalised_vortex", "swirl"),
+    BlindSpotCode.VOLUME: ("axis_aligned", "clamped_shear", "swirl"),
+    BlindSpotCode.GRADIENT: ("axis_aligned", "clamped_shear"),
+    BlindSpotCode.START: ("axis_aligned:phase=0.785", "clamped_shear"),
+    BlindSpotCode.VELOCITY: ("axis_aligned", "clamped_shear"),
+    BlindSpotCode.MIRROR: ("axis_aligned", "clamped_shear"),
+    BlindSpotCode.AMPLITUDE: ("axis_aligned", "clamped_shear"),
+    BlindSpotCode.CROSSING: ("axis_aligned", "clamped_shear"),
+    BlindSpotCode.WALLS: ("axis_aligned",),
+    BlindSpotCode.LOAD: ("axis_aligned", "clamped_shear"),
+    BlindSpotCode.STRESS: ("axis_aligned", "clamped_shear"),
+    BlindSpotCode.PLANE: ("axis_aligned", "clamped_shear"),
 }
 
 
@@ -86,22 +86,22 @@ def one_dimensional(n: Numbers) -> bool:
     return n["weaker_component"] <= FAINT or n["weaker_direction"] <= FAINT
 
 
-RULES: dict[SpotCode, tuple[Callable[[Numbers], bool], tuple[str, ...]]] = {  # when it is blind, what tells it
-    SpotCode.SHEAR: (lambda n: n["shear"] <= FAINT * n["strain"], ("shear",)),
-    SpotCode.ROTATION: (lambda n: n["rotation_deg"] < TURNED, ("rotation_deg",)),
-    SpotCode.ORDER: (lambda n: n["order"] <= FAINT * n["strain"], ("order",)),
-    SpotCode.SPIN: (lambda n: n["spin"] <= FAINT, ("spin",)),
-    SpotCode.VOLUME: (volume_kept, ("J_min", "J_max")),
-    SpotCode.GRADIENT: (lambda n: n["gradient"] <= FAINT * n["strain"], ("gradient",)),
-    SpotCode.START: (lambda n: n["start_acceleration"] <= WEAK, ("start_acceleration",)),
-    SpotCode.VELOCITY: (lambda n: n["start_velocity"] <= FAINT, ("start_velocity",)),
-    SpotCode.MIRROR: (lambda n: n["mirror"] <= FAINT, ("mirror",)),
-    SpotCode.AMPLITUDE: (lambda n: n["strain"] < SMALL, ("strain", "stress")),
-    SpotCode.CROSSING: (lambda n: n["finest"] * n["displacement"] < QUARTER, ("displacement", "finest")),
-    SpotCode.WALLS: (walls_idle, ("edge_motion", "edge_normal_motion", "edge_traction", "edge_free")),
-    SpotCode.LOAD: (lambda n: n["load"] <= WEAK, ("load",)),
-    SpotCode.STRESS: (lambda n: n["stress_force"] <= WEAK, ("stress_force",)),
-    SpotCode.PLANE: (one_dimensional, ("weaker_component", "weaker_direction")),
+RULES: dict[BlindSpotCode, tuple[Callable[[Numbers], bool], tuple[str, ...]]] = {  # when it is blind, what tells it
+    BlindSpotCode.SHEAR: (lambda n: n["shear"] <= FAINT * n["strain"], ("shear",)),
+    BlindSpotCode.ROTATION: (lambda n: n["rotation_deg"] < TURNED, ("rotation_deg",)),
+    BlindSpotCode.ORDER: (lambda n: n["order"] <= FAINT * n["strain"], ("order",)),
+    BlindSpotCode.SPIN: (lambda n: n["spin"] <= FAINT, ("spin",)),
+    BlindSpotCode.VOLUME: (volume_kept, ("J_min", "J_max")),
+    BlindSpotCode.GRADIENT: (lambda n: n["gradient"] <= FAINT * n["strain"], ("gradient",)),
+    BlindSpotCode.START: (lambda n: n["start_acceleration"] <= WEAK, ("start_acceleration",)),
+    BlindSpotCode.VELOCITY: (lambda n: n["start_velocity"] <= FAINT, ("start_velocity",)),
+    BlindSpotCode.MIRROR: (lambda n: n["mirror"] <= FAINT, ("mirror",)),
+    BlindSpotCode.AMPLITUDE: (lambda n: n["strain"] < SMALL, ("strain", "stress")),
+    BlindSpotCode.CROSSING: (lambda n: n["finest"] * n["displacement"] < QUARTER, ("displacement", "finest")),
+    BlindSpotCode.WALLS: (walls_idle, ("edge_motion", "edge_normal_motion", "edge_traction", "edge_free")),
+    BlindSpotCode.LOAD: (lambda n: n["load"] <= WEAK, ("load",)),
+    BlindSpotCode.STRESS: (lambda n: n["stress_force"] <= WEAK, ("stress_force",)),
+    BlindSpotCode.PLANE: (one_dimensional, ("weaker_component", "weaker_direction")),
 }
 
 

@@ -13,7 +13,7 @@ from mpm_verify.cases.harness.store import Arrays, Store
 from mpm_verify.cases.harness.study import QuantityPlan, Study
 from mpm_verify.cases.judging.order import Expectation
 from mpm_verify.cases.mms.run import NORMS, QUANTITIES, Result, Run
-from mpm_verify.mms.blind_spots import ALWAYS, BlindSpot, SpotCode
+from mpm_verify.mms.blind_spots import ALWAYS, BlindSpot, BlindSpotCode
 from mpm_verify.solver.failure import Failure, FailureKind
 
 CELLS = (8, 16, 32, 64, 128)
@@ -28,8 +28,8 @@ U_RMS: dict[tuple[str, int], tuple[float, ...]] = {  # the runs behind the last 
 SIZE = {"u": 1.0, "v": 320.0, "F": 11.0, "sigma": 9.0e4}  # errors of the others, in errors of u
 SCALE = {"u": 0.025, "v": 7.9, "F": 1.02, "sigma": 1700.0}
 AUDIT = (
-    BlindSpot(SpotCode.SHEAR, True, {"shear": 0.0}),
-    BlindSpot(SpotCode.VOLUME, False, {"J_min": 0.5, "J_max": 1.7}),
+    BlindSpot(BlindSpotCode.SHEAR, True, {"shear": 0.0}),
+    BlindSpot(BlindSpotCode.VOLUME, False, {"J_min": 0.5, "J_max": 1.7}),
     *ALWAYS,
 )
 GAP: dict[str, float | None] = {"cpdi": 0.1, "mpm": None}  # at 8 cells

@@ -12,7 +12,7 @@ import test_defects as defects
 from pydantic import TypeAdapter
 
 from mpm_verify.mms.audit import Audit, audit
-from mpm_verify.mms.blind_spots import ALWAYS, RULES, SEEN_BY, SpotCode
+from mpm_verify.mms.blind_spots import ALWAYS, RULES, SEEN_BY, BlindSpotCode
 from mpm_verify.mms.manufacture import Manufactured, manufacture
 from mpm_verify.mms.measure import boundary
 from mpm_verify.reports.sentences.blind_spots import sentence
@@ -60,7 +60,7 @@ case = cache(Case)
 @pytest.mark.parametrize("text", BLIND)
 def test_what_is_found(text: str) -> None:
     assert case(text).blind == BLIND[text]
-    assert [spot.code for spot in case(text).audit.spots] == [*RULES, SpotCode.ORDERS, SpotCode.CONSTANTS]
+    assert [spot.code for spot in case(text).audit.spots] == [*RULES, BlindSpotCode.ORDERS, BlindSpotCode.CONSTANTS]
 
 
 @pytest.mark.parametrize("name", available(SOLUTIONS))
@@ -190,7 +190,7 @@ def test_free_edges_with_a_traction_are_told() -> None:
         for ring in (create(SOLUTIONS, "expanding_ring"),)
         for law in (create(MATERIALS, ring.material), create(MATERIALS, "neo_hookean"))
     )
-    said = [next(sentence(spot) for spot in a.spots if spot.code == SpotCode.WALLS) for a in (own, other)]
+    said = [next(sentence(spot) for spot in a.spots if spot.code == BlindSpotCode.WALLS) for a in (own, other)]
     assert "no study of it converges" not in said[0]
     assert "no study of it converges" in said[1]
 

@@ -23,7 +23,7 @@ from mpm_verify.cases.objectivity.axes import KINEMATIC, Block
 from mpm_verify.cases.objectivity.execute import ObjectivityResult
 from mpm_verify.cases.objectivity.findings import ObjectivityRemark
 from mpm_verify.cases.objectivity.rates import order_checks, order_errors
-from mpm_verify.mms.blind_spots import ALWAYS, RULES, SEEN_BY, BlindSpot, SpotCode, judge
+from mpm_verify.mms.blind_spots import ALWAYS, RULES, SEEN_BY, BlindSpot, BlindSpotCode, judge
 from mpm_verify.reports.sentences import blind_spots, column, element, numbers, objectivity, remarks
 from mpm_verify.verify.main import main
 
@@ -154,7 +154,7 @@ def spots() -> Iterator[BlindSpot]:
 
 def test_every_blind_spot_has_words() -> None:
     every = {spot.code for spot in spots()}
-    assert every == set(SpotCode) == set(SEEN_BY) | {spot.code for spot in ALWAYS}
+    assert every == set(BlindSpotCode) == set(SEEN_BY) | {spot.code for spot in ALWAYS}
     for spot in (replace(spot, blind=blind) for spot in spots() for blind in (False, True)):
         if spot.blind or spot.code in RULES:
             text = blind_spots.sentence(spot)

@@ -6,7 +6,7 @@ from functools import cache
 from typing import Any
 
 from mpm_verify.cases.harness.identity import identity
-from mpm_verify.mms.blind_spots import BlindSpot, SpotCode
+from mpm_verify.mms.blind_spots import BlindSpot, BlindSpotCode
 from mpm_verify.mms.manufacture import Manufactured, manufacture
 from mpm_verify.mms.printed import folder
 from mpm_verify.solver.cache_folder import kept
@@ -50,7 +50,7 @@ def _audited(solution: str, material: str, now: Names) -> tuple[BlindSpot, ...]:
         return _audit(solution, material)
     where = folder(name, "mpm_verify.mms.audit")
     text = kept(where, "blind_spots", lambda: json.dumps([asdict(spot) for spot in _audit(solution, material)]))
-    return tuple(BlindSpot(SpotCode(spot["code"]), spot["blind"], spot["numbers"]) for spot in json.loads(text))
+    return tuple(BlindSpot(BlindSpotCode(spot["code"]), spot["blind"], spot["numbers"]) for spot in json.loads(text))
 
 
 def _audit(solution: str, material: str) -> tuple[BlindSpot, ...]:

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from mpm_verify.mms.blind_spots import CLEAR, FAINT, ROUND, SEEN_BY, BlindSpot, Numbers, SpotCode
+from mpm_verify.mms.blind_spots import CLEAR, FAINT, ROUND, SEEN_BY, BlindSpot, BlindSpotCode, Numbers
 from mpm_verify.reports.sentences.numbers import figure, percent
 
 MINUS = "\N{MINUS SIGN}"
@@ -87,89 +87,89 @@ def no_plane(n: Numbers) -> str:
     return f"The problem is one-dimensional: {still} is all but zero, so half of the code is not tested."
 
 
-BLIND: dict[SpotCode, Words] = {
-    SpotCode.SHEAR: no_shear,
-    SpotCode.ROTATION: no_rotation,
-    SpotCode.ORDER: lambda n: (
+BLIND: dict[BlindSpotCode, Words] = {
+    BlindSpotCode.SHEAR: no_shear,
+    BlindSpotCode.ROTATION: no_rotation,
+    BlindSpotCode.ORDER: lambda n: (
         "F and the velocity gradient L commute, so F (I + dt L) instead of (I + dt L) F is invisible."
     ),
-    SpotCode.SPIN: lambda n: "The velocity gradient L is symmetric, so L transposed is invisible.",
-    SpotCode.VOLUME: no_volume,
-    SpotCode.GRADIENT: lambda n: (
+    BlindSpotCode.SPIN: lambda n: "The velocity gradient L is symmetric, so L transposed is invisible.",
+    BlindSpotCode.VOLUME: no_volume,
+    BlindSpotCode.GRADIENT: lambda n: (
         "F is the same everywhere at a time: the stress has no gradient, so what depends on one is invisible."
     ),
-    SpotCode.START: lambda n: (
+    BlindSpotCode.START: lambda n: (
         f"The motion starts {begins(n['start_acceleration'], 'acceleration')}, so a missing half-step start is "
         "invisible."
     ),
-    SpotCode.VELOCITY: lambda n: (
+    BlindSpotCode.VELOCITY: lambda n: (
         f"The body starts {begins(n['start_velocity'], 'velocity')}, so wrong initial velocities are invisible."
     ),
-    SpotCode.MIRROR: lambda n: (
+    BlindSpotCode.MIRROR: lambda n: (
         "The motion is its own mirror image in the diagonal X = Y, so x and y exchanged throughout is invisible."
     ),
-    SpotCode.AMPLITUDE: lambda n: (
+    BlindSpotCode.AMPLITUDE: lambda n: (
         f"{amplitude(n)}: so small that ln J cannot be told from J {MINUS} 1, V0 from V, nor the position x from the "
         "reference position X."
     ),
-    SpotCode.CROSSING: lambda n: (
+    BlindSpotCode.CROSSING: lambda n: (
         f"At {n['finest']:g} cells the largest displacement is {figure(n['finest'] * n['displacement'])} cells, so of "
         "4 particles in a cell none crosses into another: what crossing does is invisible."
     ),
-    SpotCode.WALLS: no_walls,
-    SpotCode.LOAD: lambda n: (
+    BlindSpotCode.WALLS: no_walls,
+    BlindSpotCode.LOAD: lambda n: (
         f"The body force is at most {percent(n['load'])} of the largest acceleration, so one that is dropped or wrong "
         "is hard to see."
     ),
-    SpotCode.STRESS: lambda n: (
+    BlindSpotCode.STRESS: lambda n: (
         f"The divergence of the stress is {percent(n['stress_force'])} of what the body force and the inertia are: the "
         "load alone moves the body, so wrong internal forces hardly show."
     ),
-    SpotCode.PLANE: no_plane,
-    SpotCode.ORDERS: lambda n: (
+    BlindSpotCode.PLANE: no_plane,
+    BlindSpotCode.ORDERS: lambda n: (
         "Orders alone let defects pass; exact solutions, invariants and recorded magnitudes catch some that no order "
         "shows."
     ),
-    SpotCode.CONSTANTS: lambda n: (
+    BlindSpotCode.CONSTANTS: lambda n: (
         "A wrong constant leaves the order as it is; only a recorded magnitude sees it."
     ),
 }  # fmt: skip
-SEEN: dict[SpotCode, Words] = {
-    SpotCode.SHEAR: lambda n: (
+SEEN: dict[BlindSpotCode, Words] = {
+    BlindSpotCode.SHEAR: lambda n: (
         f"Off-diagonal components of F reach {figure(n['shear'])}, so the shear stress takes part."
     ),
-    SpotCode.ROTATION: rotation,
-    SpotCode.ORDER: lambda n: (
+    BlindSpotCode.ROTATION: rotation,
+    BlindSpotCode.ORDER: lambda n: (
         "F and the velocity gradient L do not commute, so a wrong order in the update of F shows."
     ),
-    SpotCode.SPIN: lambda n: "The velocity gradient L is not symmetric, so L transposed shows.",
-    SpotCode.VOLUME: lambda n: (
+    BlindSpotCode.SPIN: lambda n: "The velocity gradient L is not symmetric, so L transposed shows.",
+    BlindSpotCode.VOLUME: lambda n: (
         f"det F runs from {figure(n['J_min'])} to {figure(n['J_max'])}, so the volumetric response takes part."
     ),
-    SpotCode.GRADIENT: lambda n: (
+    BlindSpotCode.GRADIENT: lambda n: (
         f"The gradient of F reaches {figure(n['gradient'])} over the body's width, so the stress has one too."
     ),
-    SpotCode.START: lambda n: (
+    BlindSpotCode.START: lambda n: (
         f"The motion starts {begins(n['start_acceleration'], 'acceleration')}, so a missing half-step start shows."
     ),
-    SpotCode.VELOCITY: lambda n: (
+    BlindSpotCode.VELOCITY: lambda n: (
         f"The body starts {begins(n['start_velocity'], 'velocity')}, so wrong initial velocities show."
     ),
-    SpotCode.MIRROR: lambda n: "The motion is not the same in x and y, so axes that are exchanged show.",
-    SpotCode.AMPLITUDE: lambda n: f"{amplitude(n)}.",
-    SpotCode.CROSSING: lambda n: (
+    BlindSpotCode.MIRROR: lambda n: "The motion is not the same in x and y, so axes that are exchanged show.",
+    BlindSpotCode.AMPLITUDE: lambda n: f"{amplitude(n)}.",
+    BlindSpotCode.CROSSING: lambda n: (
         f"At N cells the largest displacement is {figure(n['displacement'])} N cells "
         f"({figure(n['finest'] * n['displacement'])} at {n['finest']:g}), so particles cross cells."
     ),
-    SpotCode.WALLS: lambda n: (
+    BlindSpotCode.WALLS: lambda n: (
         "Particles slide along walls that they press on; walls that hold them and free edges take no part."
     ),
-    SpotCode.LOAD: lambda n: (
+    BlindSpotCode.LOAD: lambda n: (
         f"The body force reaches {figure(n['load'])} times the largest acceleration, so one that is dropped shows."
     ),
-    SpotCode.STRESS: lambda n: (
+    BlindSpotCode.STRESS: lambda n: (
         f"The divergence of the stress is {percent(n['stress_force'])} of the larger of body force and inertia: "
         "internal forces take part."
     ),
-    SpotCode.PLANE: lambda n: "Both components move, and both x and y have gradients.",
+    BlindSpotCode.PLANE: lambda n: "Both components move, and both x and y have gradients.",
 }  # fmt: skip
