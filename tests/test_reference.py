@@ -5,9 +5,10 @@ import math
 
 import pytest
 
-from mpm_verify.cases.mms.execute import execute
+from mpm_verify.cases.mms.execute import execute, setup
 from mpm_verify.cases.mms.run import Run
 from mpm_verify.solver.failure import FailureKind
+from mpm_verify.solver.step import advance
 
 CELLS = (8, 16, 32, 64, 128)
 CPDI = {
@@ -92,3 +93,22 @@ def test_half_the_time_step_changes_little() -> None:
 def test_pic_dissipates() -> None:
     result, _ = execute(Run("cpdi", "axis_aligned", "neo_hookean", 16, 4, 0.4, transfer="pic"))
     assert result.errors["u"]["rms"] > 3 * CPDI[4][1]
+
+
+def test_update_stress_first_has_its_second_order() -> None:
+    """With F and sigma at -dt; the same run with both at 0 is of first order, and its error four times as large."""
+    runs = [Run("mpm", "clamped_shear:G=1e-06", "neo_hookean", cells, 4, stress="usf") for cells in (8, 16, 32)]
+    u = [execute(run)[0].errors["u"]["rms"] for run in runs]
+    assert u == pytest.approx([7.189e-8, 1.725e-8, 4.258e-9], rel=1e-3)
+    assert min(orders(u)) > 1.95
+    late = []
+    for run in runs:
+        model, comparison, steps = setup(run)
+        p = model.particles
+        p.F[:], p.sigma[:] = comparison.exact.F(p.X, 0.0), comparison.exact.sigma(p.X, 0.0)
+        for _ in range(steps):
+            advance(model, comparison)
+        comparison(p, model.time)
+        late.append(comparison.norms.errors()["u"]["rms"])
+    assert late == pytest.approx([9.333e-8, 3.723e-8, 1.730e-8], rel=1e-3)
+    assert max(orders(late)) < 1.4
