@@ -368,7 +368,7 @@ def test_the_stable_step(transfer: str) -> None:
 def wave(order: str, steps: int, staggered: bool, name: str = "mpm") -> Floats:
     """Places after 0.8 L/c of a standing wave that begins in motion and under stress, on 32 cells, 3 x 3 per cell.
 
-    A = 1e-3: no crossings, so that time is all that is left. A staggered run starts at v0 - dt/2 a0, a0 of the grid, and
+    A = 1e-3: no crossings, so that time is all that is left. A staggered run starts at v0 - dt/2 a0 of the grid, and
     with update-stress-first at F of -dt.
     """
     c, A = LAW.wave_speed(), 1e-3
