@@ -12,9 +12,11 @@ import numpy as np
 import pytest
 from fixtures_command import Call, caller, one_line
 
+import mpm_verify as mv
 from mpm_verify.cases.harness.build import Asked, build
 from mpm_verify.cases.mms.external import command
 from mpm_verify.cases.mms.external.answer import Frame, Levels, levels, read
+from mpm_verify.cases.mms.external.callables import Case, register, version
 from mpm_verify.cases.mms.external.errors import compare
 from mpm_verify.cases.mms.external.hints import hints
 from mpm_verify.cases.mms.run import Run
@@ -413,3 +415,76 @@ def test_no_fault_is_hinted_at_where_there_is_none() -> None:
     assert hints(EXACT, X, STEP, frames_of(lambda step: {}), USUAL) == {}
     wrong = frames_of(lambda step: {"x": X + 1.05 * EXACT.u(X, step * STEP)})
     assert hints(EXACT, X, STEP, wrong, USUAL) == {}
+
+
+# ---- Python functions
+
+
+def by_the_book(case: Case) -> Any:
+    """The exact positions and velocities, with an error of dx^2 in both."""
+    u, v = EXACT.u, EXACT.v
+    error, found = 1 + case.record.dx**2, {}
+    start = case.array("X")
+    for step in case.record.frames:
+        t = step * case.record.dt
+        found[step] = {"x": start + error * u(start, t), "v": error * v(start, t)}
+    return found, {"v_lag": 0.0, "version": "1"}
+
+
+def called(tmp_path: Path, solver: Callable[[Case], Any], **more: Any) -> Any:
+    axes = {"solution": "clamped_shear", "cells": [8, 12, 16, 24], "courant": [0.4, 0.2], "order": 2.0, **more}
+    return mv.study("mms", solver=solver, ppc=4, out=tmp_path / "study", **axes)
+
+
+def test_a_function_is_a_solver(tmp_path: Path) -> None:
+    done = called(tmp_path, by_the_book)
+    done.check()
+    rows = done.frames()["errors"]
+    u, v = (rows[(rows.quantity == q) & (rows.cells == 8)].rms.iloc[0] for q in "uv")
+    scale = {result.run.cells: result.scale for result in done.record.results.values()}[8]
+    assert (u, v) == pytest.approx((scale["u"] / 64, scale["v"] / 64), rel=1e-9)
+    assert set(rows.quantity[rows.rms.notna()]) == {"u", "v"}
+    assert done.verdicts[0]["observed"] == pytest.approx(2.0, abs=0.03)
+
+
+def test_a_failing_assertion_says_the_verdict(tmp_path: Path) -> None:
+    done = called(tmp_path, by_the_book, order=3.0)
+    with pytest.raises(AssertionError, match=r"(?s)FAIL  by_the_book.*order 2\.0.*below the band"):
+        done.check()
+
+
+def each(case: Case, arrays: dict[str, Any]) -> dict[int, Any]:
+    """The same arrays in all frames."""
+    return dict.fromkeys(case.record.frames, arrays)
+
+
+GIVES: dict[str, tuple[Callable[[Case], Any], FailureKind]] = {
+    "it raises": (lambda case: 1 / 0, FailureKind.SOLVER_ERROR),
+    "nothing": (lambda case: None, FailureKind.UNREADABLE),
+    "no frame": (lambda case: {}, FailureKind.NO_ANSWER),
+    "no x": (lambda case: each(case, {"v": case.array("v")}), FailureKind.NO_COLUMN),
+    "half": (lambda case: each(case, {"x": case.array("x")[::2]}), FailureKind.OTHER_PARTICLES),
+    "words": (lambda case: each(case, {"x": "x"}), FailureKind.UNREADABLE),
+    "levels": (
+        lambda case: (each(case, {"x": case.array("x")}), {"v_lag": "x"}),
+        FailureKind.UNREADABLE,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", GIVES)
+def test_what_a_function_gives_is_held_against_the_contract(tmp_path: Path, name: str) -> None:
+    function, kind = GIVES[name]
+    done = called(tmp_path, function, cells=[8], courant=[0.4])
+    kinds = {result.failure.kind for result in done.record.results.values()}
+    assert kinds == {kind}
+    assert done.exit_code == 4
+
+
+def test_a_function_is_known_by_its_file_and_its_code() -> None:
+    one, other = (lambda case: 1), (lambda case: 2)
+    names = [register(one), register(other)]
+    assert names[0] == names[1]  # two of one name are told apart by their code
+    assert version(register(one)) != version(register(other))
+    with pytest.raises(ValueError, match="is a Python function"):
+        version("python:nowhere")

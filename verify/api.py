@@ -78,7 +78,8 @@ def study(
     quick
         Whether axes that are not given have the values of `--quick`.
     **axes
-        Fields of the case's Run, one value or a list each, whose product is run.
+        Fields of the case's Run, one value or a list each, whose product is run. A `solver` may be a Python function
+        of a case, see docs/own-solver.md.
 
     Returns
     -------
@@ -94,6 +95,10 @@ def study(
     """
     from mpm_verify.cases.harness.build import Asked, build
 
+    if callable(axes.get("solver")):
+        from mpm_verify.cases.mms.external.callables import register
+
+        axes, jobs = {**axes, "solver": register(axes["solver"])}, 1
     values = {key: list(value) if isinstance(value, list | tuple) else [value] for key, value in axes.items()}
     words = [f"{key}={value!r}" for key, value in axes.items()]
     command = f"mpm_verify.study({', '.join([repr(case), *words])})"
@@ -158,6 +163,16 @@ class StoredStudy:
     def exit_code(self) -> int:
         """Exit code of the command that runs the same."""
         return self.record.analysis.exit_code
+
+    def check(self) -> None:
+        """Raise AssertionError with the sentences of what is not a PASS, for a test of your own."""
+        if self.outcome == "PASS":
+            return
+        from mpm_verify.verify.terminal import checks, table
+
+        said = [table.sentence(self.record, f).plain.strip() for f in self.record.findings if f.plan.judged]
+        said += [checks.sentence(one) for one in self.record.analysis.checks if one.outcome != "PASS"]
+        raise AssertionError("\n".join([f"{self.record.study.title}: {self.outcome}", *said]))
 
     @property
     def verdicts(self) -> list[dict[str, Any]]:

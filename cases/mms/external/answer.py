@@ -53,14 +53,22 @@ def levels(out: Path) -> Levels:
     path = out / "result.json"
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        return Levels()
+    except (OSError, ValueError, RecursionError):
+        raise RunFailed(FailureKind.UNREADABLE, -1, names={"file": path.name}) from None
+    return stated(data, path.name)
+
+
+def stated(data: Any, file: str) -> Levels:
+    """Time levels of a mapping. Raises RunFailed for what is none."""
+    try:
         told = {key: float(data[key]) for key in LEVELS if key in data}
         if not all(abs(lag) <= 2 for lag in told.values()):
             raise ValueError
         return Levels(**told, version=str(data.get("version", ""))[:80])
-    except FileNotFoundError:
-        return Levels()
-    except (OSError, ValueError, TypeError, AttributeError, RecursionError):
-        raise RunFailed(FailureKind.UNREADABLE, -1, names={"file": path.name}) from None
+    except (ValueError, TypeError, AttributeError):
+        raise RunFailed(FailureKind.UNREADABLE, -1, names={"file": file}) from None
 
 
 def read(out: Path, step: int, X: Floats, spacing: float) -> Frame:
@@ -90,37 +98,41 @@ def read(out: Path, step: int, X: Floats, spacing: float) -> Frame:
     path = next((path for path in (out / f"result_{step}.{ending}" for ending in ENDINGS) if path.exists()), None)
     if path is None:
         raise RunFailed(FailureKind.NO_ANSWER, step, names={"file": f"result_{step}.csv"})
-    columns, resolution = table(path, step)
+    return framed(table(path, step), X, spacing, path.name, step)
+
+
+def framed(columns: dict[str, Any], X: Floats, spacing: float, file: str, step: int) -> Frame:
+    """Frame of columns as they were written, in the order of X (P,2). Raises RunFailed."""
+    try:
+        numbers = {name: np.asarray(values, dtype=np.float64) for name, values in columns.items()}
+        resolution = {name: rounding(values) for name, values in columns.items()}
+    except (ValueError, TypeError):
+        raise RunFailed(FailureKind.UNREADABLE, step, names={"file": file}) from None
+    if len({len(values) for values in numbers.values()}) > 1 or not numbers:
+        raise RunFailed(FailureKind.UNREADABLE, step, names={"file": file})
     for name in QUANTITIES["x"]:
-        if name not in columns:
-            raise RunFailed(FailureKind.NO_COLUMN, step, names={"file": path.name, "column": name})
-    order = matched(columns, X, spacing, path.name, step)
+        if name not in numbers:
+            raise RunFailed(FailureKind.NO_COLUMN, step, names={"file": file, "column": name})
+    order = matched(numbers, X, spacing, file, step)
     found, digits = {}, {}
     for quantity, names in QUANTITIES.items():
-        if not all(name in columns for name in names):
+        if not all(name in numbers for name in names):
             continue
-        values = np.stack([columns[name] for name in names], axis=-1)[order]
+        values = np.stack([numbers[name] for name in names], axis=-1)[order]
         if not np.isfinite(values).all():
             particle = int(np.argwhere(~np.isfinite(values).all(axis=1))[0, 0])
-            raise RunFailed(FailureKind.NOT_FINITE, step, particle, names={"file": path.name})
+            raise RunFailed(FailureKind.NOT_FINITE, step, particle, names={"file": file})
         found[quantity] = values
         digits[quantity] = float(np.sqrt(sum(resolution.get(name, 0.0) ** 2 for name in names)))
     return Frame(found, digits)
 
 
-def table(path: Path, step: int) -> tuple[dict[str, Floats], dict[str, float]]:
-    """Columns of a file by name, and the rounding of each. Raises RunFailed."""
+def table(path: Path, step: int) -> dict[str, Any]:
+    """Columns of a file by name, as they are written. Raises RunFailed."""
     try:
-        columns = {".npz": arrays, ".vtu": mesh}.get(path.suffix, text)(path)
-        kept = {name: np.asarray(values, dtype=np.float64) for name, values in columns.items()}
-        told = {name: rounding(values) for name, values in columns.items()}
-    except RunFailed:
-        raise
+        return {".npz": arrays, ".vtu": mesh}.get(path.suffix, text)(path)
     except Exception:  # of three libraries, for anything that is not such a file
         raise RunFailed(FailureKind.UNREADABLE, step, names={"file": path.name}) from None
-    if len({len(values) for values in columns.values()}) > 1 or not columns:
-        raise RunFailed(FailureKind.UNREADABLE, step, names={"file": path.name})
-    return kept, told
 
 
 def text(path: Path) -> dict[str, Any]:

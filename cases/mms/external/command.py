@@ -7,6 +7,7 @@ from contextlib import suppress
 from pathlib import Path
 
 FOLDERS = ("{case}", "{out}")
+PYTHON = "python:"  # begins the name of a function, see callables.py
 
 
 def parts(command: str) -> list[str]:
@@ -26,7 +27,11 @@ def parts(command: str) -> list[str]:
 
 
 def version(command: str) -> str:
-    """Hash of the program and of all files among its arguments, 12 hex digits."""
+    """Hash of the program and of all files among its arguments, 12 hex digits; of a Python function, of its file."""
+    if command.startswith(PYTHON):
+        from mpm_verify.cases.mms.external.callables import version as of_function
+
+        return of_function(command)
     found = hashlib.sha256()
     for number, word in enumerate(parts(command)):
         file = Path(shutil.which(word) or word) if number == 0 else Path(word)
@@ -39,6 +44,8 @@ def version(command: str) -> str:
 
 def program(command: str) -> str:
     """Name of the program: of the first file among its arguments, as of `python mine.py`, or of its first word."""
+    if command.startswith(PYTHON):
+        return command.rpartition(".")[2]
     first, *others = parts(command)
     return next((Path(word).name for word in others if Path(word).is_file()), Path(first).name)
 

@@ -5,6 +5,7 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
+from math import sqrt
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,8 @@ from mpm_verify.cases.harness.environment import environment
 from mpm_verify.cases.harness.study import Arrays, parameters
 from mpm_verify.cases.mms.exact import audited, manufactured
 from mpm_verify.cases.mms.external.answer import Levels, levels, read
-from mpm_verify.cases.mms.external.command import filled
+from mpm_verify.cases.mms.external.callables import Case, called
+from mpm_verify.cases.mms.external.command import PYTHON, filled
 from mpm_verify.cases.mms.external.errors import Found, compare
 from mpm_verify.cases.mms.external.hints import hints
 from mpm_verify.cases.mms.run import Result, Run
@@ -32,6 +34,8 @@ ROUND = float(np.finfo(np.float64).eps)
 def execute(run: Run, tick: Callable[[float], None] = lambda fraction: None) -> tuple[Result, Arrays]:
     """Run the program to its end, or to where it fails: that is a Result too. `tick` hears the fraction of frames."""
     case = exported(run)
+    if run.solver.startswith(PYTHON):
+        return in_process(run, case), {}
     with tempfile.TemporaryDirectory(prefix="mpm-verify-") as top:
         folder, out = Path(top) / "case", Path(top) / "out"
         out.mkdir()
@@ -60,6 +64,21 @@ def execute(run: Run, tick: Callable[[float], None] = lambda fraction: None) -> 
     return result, {}
 
 
+def in_process(run: Run, case: Exported) -> Result:
+    """Result of a Python function."""
+    exact, failure, found, told, why = manufactured(run.solution, run.material), None, Found({}, {}, {}), Levels(), {}
+    X, dt = np.stack([case.particles["X"], case.particles["Y"]], axis=-1), case.record.dt
+    started = time.perf_counter()
+    try:
+        frames, told = called(run.solver, Case(case.record, case.particles, exact.b), X, case.record.dx / sqrt(run.ppc))
+        found, why = compare(exact, X, case.particles["V0"], dt, frames, told), hints(exact, X, dt, frames, told)
+    except RunFailed as error:
+        failure = error.failure
+    return replace(
+        result_of(run, case, found, failure), wall_s=time.perf_counter() - started, told=told.version, values=why
+    )
+
+
 def check(ended: Ended, seconds: float, log: tuple[str, ...]) -> None:
     """Raise RunFailed for a program that did not end with 0, with the last line that it printed."""
     names = {"said": log[-1]} if log else {}
@@ -80,7 +99,7 @@ def exported(run: Run) -> Exported:
 def answered(run: Run, case: Exported, out: Path, told: Levels) -> tuple[Found, dict[str, float]]:
     """Errors of the frames, and hints. Raises RunFailed for an answer that is missing or cannot be read."""
     X = np.stack([case.particles["X"], case.particles["Y"]], axis=-1)
-    spacing = case.record.dx / np.sqrt(run.ppc)
+    spacing = case.record.dx / sqrt(run.ppc)
     frames = {step: read(out, step, X, spacing) for step in case.record.frames}
     exact, dt = manufactured(run.solution, run.material), case.record.dt
     return compare(exact, X, case.particles["V0"], dt, frames, told), hints(exact, X, dt, frames, told)
