@@ -188,6 +188,7 @@ def examined(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFa
     return make(tmp_path_factory.mktemp(request.param)), images
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("width", WIDTHS)
 def test_examinations(browser: webdriver.Chrome, examined: tuple[Path, int], width: int) -> None:
     page, images = examined

@@ -127,6 +127,7 @@ def test_twice_is_once(verify: Any, swept: Path) -> None:
     ]
 
 
+@pytest.mark.slow
 def test_a_report_is_made_again(verify: Any, swept: Path) -> None:
     page = (swept / "report.html").read_bytes()
     (swept / "report.html").unlink()
@@ -220,6 +221,7 @@ def test_bad_input_is_one_line(verify: Any, words: list[str], says: str) -> None
     assert says.lower() in ended.err.lower()
 
 
+@pytest.mark.slow
 def test_a_store_that_cannot_be_read_stays(verify: Any, swept: Path, tmp_path: Path) -> None:
     """A broken Result is named and left; a folder of another case is refused."""
     verify("column", *SMALL, "--duration", "0.05", "--out", "one")

@@ -263,6 +263,7 @@ def check_defect(plant: Plant, solution: str, order: float | None, factor: float
         assert last_order(found) == pytest.approx(order, abs=0.12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("plant", "solution", "order", "factor"), DEFECTS)
 def test_a_defect_turns_the_verdict(plant: Plant, solution: str, order: float | None, factor: float) -> None:
     check_defect(plant, solution, order, factor)
@@ -282,6 +283,7 @@ INVISIBLE = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("plant", INVISIBLE)
 def test_what_axis_aligned_cannot_see(plant: Plant) -> None:
     """F is diagonal: order, verdict and error stay, and so clamped_shear is needed."""

@@ -59,6 +59,7 @@ def outcome(folder: Path, language: str) -> Checked:
 # ---- values and tolerances
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("solution", EVERY)
 def test_values_are_those_of_the_library(solution: str) -> None:
     """By the NumPy functions, within four times the tolerance of each: SymPy prints their constants in 15 digits."""

@@ -201,6 +201,7 @@ def items(document: Json) -> list[Json]:
     return [*found, runs[0]["errors"]["u"]]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", range(6))
 def test_schema_forbids_unknown_and_missing_keys(document: Json, number: int) -> None:
     item = items(document)[number]

@@ -224,7 +224,12 @@ def test_reference_values(X: float, Y: float, t: float, u: Any, b: Any) -> None:
 
 
 @pytest.mark.parametrize(
-    ("material", "count"), [*((m, BLOCK) for m in MATERIALS), (MATERIALS[0], 1), (MATERIALS[0], BLOCK - 1)]
+    ("material", "count"),
+    [
+        *(pytest.param(m, BLOCK, marks=[pytest.mark.slow] if m != MATERIALS[0] else []) for m in MATERIALS),
+        (MATERIALS[0], 1),
+        (MATERIALS[0], BLOCK - 1),
+    ],
 )
 @every
 def test_compiled_kernel(text: str, material: str, count: int) -> None:

@@ -265,6 +265,7 @@ def test_the_page_is_made_of_what_is_stored(folder: Path) -> None:
     assert len(list((folder / "figures").glob("*.png"))) == text.count("<img") == 8
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("part", "figures"), [(SMALL, 5), (REST, 6), (KINEMATIC, 4), ("printed", 8)])
 def test_curves_that_cannot_be_read_cost_figures_alone(
     part: str, figures: int, folder: Path, capsys: pytest.CaptureFixture[str]

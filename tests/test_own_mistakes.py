@@ -295,6 +295,7 @@ def test_a_case_that_has_moved(verify: Call) -> None:
 # ---- particles that cannot be read
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("change", ["delete", "truncate", "alter"])
 def test_particles_that_cannot_be_read(verify: Call, change: str) -> None:
     verify("mms", "--cells", "16", *MMS[3:])

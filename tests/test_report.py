@@ -82,6 +82,7 @@ def text(page: str) -> str:
     return re.sub(r"\s+", " ", re.sub(r"<[^>]+>", "", re.sub(r"data:[^\"]+", "", page)))
 
 
+@pytest.mark.slow
 def test_rendering_twice_gives_the_same_bytes(folder: Path) -> None:
     before = files(folder)
     render(folder)

@@ -39,6 +39,7 @@ def cut(store: Path) -> list[Path]:
     return files
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "case", [pytest.param(case, marks=[pytest.mark.slow] if case == "column" else []) for case in STUDIES]
 )

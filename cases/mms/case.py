@@ -11,7 +11,7 @@ from typing import Any
 from mpm_verify.cases.harness.build import Asked
 from mpm_verify.cases.judging.records import Expectation
 from mpm_verify.cases.mms.expectations import JUDGED_QUANTITY, expected
-from mpm_verify.cases.mms.external.command import program, version
+from mpm_verify.cases.mms.external.command import PYTHON, program, version
 from mpm_verify.cases.mms.run import AXES, NORMS, QUANTITIES, QUICK, Result, Run
 from mpm_verify.cases.mms.stability import check_time_steps
 from mpm_verify.mms.cells import fitting, ratio
@@ -56,13 +56,22 @@ def canonical(values: dict[str, Any]) -> dict[str, Any]:
     values["transfer"] = canonical_name(TRANSFERS, values.get("transfer", Run.transfer))
     values["layout"] = canonical_name(LAYOUTS, values.get("layout", Run.layout))
     if values.get("solver"):
-        values["solver_version"] = values.get("solver_version") or version(values["solver"])
+        values["solver_version"] = values.get("solver_version") or version_of(values["solver"])
     if values.get("solver") and "method" not in values:
         values["method"] = re.sub(r"\W+", "_", program(values["solver"]).removesuffix(".py"))
     else:
         values["method"] = canonical_name(METHODS, values.get("method", Run.method))
     check_stress_update(values.get("stress", Run.stress))
     return values
+
+
+def version_of(solver: str) -> str:
+    """Version of a solver of somebody else: a command, or a Python function."""
+    if not solver.startswith(PYTHON):
+        return version(solver)
+    from mpm_verify.cases.mms.external.callables import version as of_function
+
+    return of_function(solver)
 
 
 def check(runs: Sequence[Run]) -> None:

@@ -18,7 +18,8 @@ def files(case: Exported) -> dict[str, str]:
     """Texts of a case by the names of their files."""
     return {
         FLAT: "".join(f"{name} {value}\n" for name, value in flat(case.record)),
-        PARTICLES: csv(case.particles), FORCE: csv(case.force), FIELDS: csv(case.fields), **case.sources,
+        PARTICLES: csv(case.particles), **case.sources,
+        **{name: csv(columns) for name, columns in ((FORCE, case.force), (FIELDS, case.fields)) if columns},
         CASE: json.dumps(asdict(case.record), indent=1) + "\n",
     }  # fmt: skip
 

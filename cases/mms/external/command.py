@@ -27,11 +27,7 @@ def parts(command: str) -> list[str]:
 
 
 def version(command: str) -> str:
-    """Hash of the program and of all files among its arguments, 12 hex digits; of a Python function, of its file."""
-    if command.startswith(PYTHON):
-        from mpm_verify.cases.mms.external.callables import version as of_function
-
-        return of_function(command)
+    """Hash of the program and of all files among its arguments, 12 hex digits."""
     found = hashlib.sha256()
     for number, word in enumerate(parts(command)):
         file = Path(shutil.which(word) or word) if number == 0 else Path(word)
