@@ -19,12 +19,15 @@ from mpm_verify.cases.mms.external.answer import Frame, Levels, levels, read
 from mpm_verify.cases.mms.external.callables import Case, register, version
 from mpm_verify.cases.mms.external.errors import compare
 from mpm_verify.cases.mms.external.hints import hints
-from mpm_verify.cases.mms.run import Run
+from mpm_verify.cases.mms.run import STARTS, Run
+from mpm_verify.mms.export.case import Names, export
+from mpm_verify.mms.export.start import named
 from mpm_verify.mms.manufacture import manufacture
 from mpm_verify.reports.sentences import failures, own_solver
 from mpm_verify.solver.failure import FailureKind, RunFailed
 from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS, create
 from mpm_verify.solver.state import Floats
+from mpm_verify.verify.terminal import table
 
 HEAD = "id,X,Y,x,y,vx,vy,Fxx,Fxy,Fyx,Fyy,sxx,syy,szz,sxy"
 LAW = create(MATERIALS, "neo_hookean")
@@ -488,3 +491,68 @@ def test_a_function_is_known_by_its_file_and_its_code() -> None:
     assert version(register(one)) != version(register(other))
     with pytest.raises(ValueError, match="is a Python function"):
         version("python:nowhere")
+
+
+# ---- time levels by force
+
+
+def leapfrog(case: Case) -> Any:
+    """A particle in each point of the body that its own force moves: positions as if all stress were in b.
+
+    It has order 2 in dt with v at -dt/2 and the force of the start of a step, and order 1 with v at 0.
+    """
+    X, x, v = case.array("X"), case.array("x"), case.array("v", "_half")
+    dt, found = case.record.dt, {}
+    for step in range(1, case.record.steps + 1):
+        v = v + dt * acceleration(X, (step - 1) * dt)
+        x = x + dt * v
+        if step in case.record.frames:
+            found[step] = {"x": x}
+    return found
+
+
+def acceleration(X: Floats, t: float) -> Floats:
+    h = 1e-6
+    return (EXACT.v(X, t + h) - EXACT.v(X, t - h)) / (2 * h)
+
+
+def test_the_start_that_fits_is_named(tmp_path: Path) -> None:
+    """The force of the toy is its own, so b does not matter; v does."""
+    starts = ["half.now.start", "half.now.end", "zero.now.start", "zero.before.end"]
+    done = called(tmp_path, leapfrog, cells=[8, 16], courant=[0.4], start=starts)
+    orders = table.by_start(done.record)
+    assert orders["half.now.start"] == orders["half.now.end"] == pytest.approx(2.0, abs=0.05)
+    assert orders["zero.now.start"] == pytest.approx(1.0, abs=0.1)
+    assert own_solver.starts(orders).startswith("Order 2.0")
+    assert "v at −dt/2" in own_solver.starts(orders)
+    assert not done.verdicts
+
+
+@pytest.mark.parametrize("name", STARTS)
+def test_a_start_gives_each_field_one_level(name: str) -> None:
+    """Under all names of the field; and the force is that of its end where it is asked for."""
+    v, F, b = name.split(".")
+    start = named(name)
+    case = export(Names("clamped_shear", "neo_hookean"), SOLUTION, LAW, 4, 4, checked=False, start=start)
+    plain, dt = export(Names("clamped_shear", "neo_hookean"), SOLUTION, LAW, 4, 4, checked=False), case.record.dt
+    for column, values in case.particles.items():
+        field, told = column.partition("_")[0], {"half": v == "half", "before": F == "before"}
+        kind = next((kind for kind in told if f"{field}_{kind}" in plain.particles), "")
+        wanted = f"{field}_{kind}" if kind and told[kind] else field if kind else column
+        np.testing.assert_array_equal(values, plain.particles[wanted])
+    space: dict[str, Any] = {}
+    exec(case.sources["body_force.py"], space)
+    at = 0.0 if b == "start" else dt
+    np.testing.assert_allclose(space["body_force"](X, 0.003), EXACT.b(X, 0.003 + at), rtol=1e-10, atol=1e-6)
+    assert start is not None
+    np.testing.assert_array_equal(start.force(EXACT.b, dt)(X, 0.003), EXACT.b(X, 0.003 + at))
+
+
+def test_a_start_is_for_a_solver_of_ones_own(verify: Call) -> None:
+    assert "give --solver too" in one_line(verify("mms", "--quick", "--start", "half.now.start"))
+
+
+def test_no_start_that_fits_is_said_too() -> None:
+    assert own_solver.starts({}) == own_solver.starts({"half.now.start": 2.0}) == ""
+    said = own_solver.starts({"half.now.start": 1.02, "zero.now.end": 0.98})
+    assert said == "No time levels give order 2: the orders are 0.98 to 1.02."

@@ -77,6 +77,8 @@ def version_of(solver: str) -> str:
 def check(runs: Sequence[Run]) -> None:
     """Raise ValueError with one line for a solution, material or layout that cannot be run."""
     check_theirs([run for run in runs if run.solver])
+    if any(run.start and not run.solver for run in runs):
+        raise ValueError("--start is for a solver of your own; give --solver too")
     cells: dict[tuple[str, str, str], set[int]] = {}
     for run in runs:
         cells.setdefault((run.solution, run.material, run.layout), set()).add(run.cells)
@@ -123,6 +125,8 @@ def multiple(run: Run) -> int:
 
 def expectation(run: Run, quantity: str, norm: str) -> Expectation | None:
     """Registered expectation, of the usual scheme alone; recorded errors hold for the usual time step and start."""
+    if run.start:
+        return None
     if run.order:
         return Expectation(run.order, source="given with --order") if (quantity, norm) in JUDGED else None
     if any(getattr(run, name) != usual for name, usual in SCHEME.items()):

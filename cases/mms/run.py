@@ -11,6 +11,7 @@ from mpm_verify.solver.stress_update import Stress
 
 QUANTITIES = ("u", "v", "F", "sigma")
 NORMS = ("rms", "max", "final", "printed")
+STARTS = tuple(f"{v}.{F}.{b}" for v in ("half", "zero") for F in ("now", "before") for b in ("start", "end"))
 AXES = {"cells": (8, 16, 32, 64, 128), "ppc": (1, 4, 9)}  # values that nobody asks for; of the rest the defaults
 QUICK = {"cells": (8, 12, 16, 24, 32), "ppc": (4,)}
 
@@ -49,6 +50,7 @@ class Run(RunRecord):
     )
     solver_version: str = axis("", "Version of that solver; usual is a hash of the files that its command names.")
     order: float = axis(0.0, "Order expected of u; 0: what is registered of the method.", named=False)
+    start: str = axis("", "Time levels that it is given by force, see docs/own-solver.md; or all.", choices=STARTS)
     time_limit: float = axis(600.0, "Seconds that a run of a solver of your own may take.", named=False)
     memory_limit: float = axis(0.0, "Address space that it may have, MB; 0: any.", named=False)
     case: ClassVar[str] = "mms"
@@ -63,6 +65,8 @@ class Run(RunRecord):
         if not 1e-3 <= self.courant <= 10:
             raise ValueError(f"courant = {self.courant} cannot be run; choose 0.001 to 10, 0.4 is usual")
 
+        if self.start and self.start not in STARTS:
+            raise ValueError(f"start = {self.start!r} must be one of {', '.join(STARTS)}")
         if not (0 <= self.order <= 10 and self.time_limit > 0 and self.memory_limit >= 0):
             raise ValueError("order must be from 0 to 10, time_limit above 0, and memory_limit 0 or more")
 

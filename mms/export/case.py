@@ -13,6 +13,7 @@ from mpm_verify.mms.export.languages import LANGUAGES
 from mpm_verify.mms.export.program import AXES, COMPONENTS, Program, programs
 from mpm_verify.mms.export.record import FORMAT, CaseRecord, MaterialRecord
 from mpm_verify.mms.export.selfcheck import at_position, checked, rows
+from mpm_verify.mms.export.start import Start
 from mpm_verify.mms.manufacture import Manufactured, manufacture
 from mpm_verify.solver.layout import Layout
 from mpm_verify.solver.plugins import label, parameters_of
@@ -61,6 +62,7 @@ def export(
     courant: float = 0.4,
     frames: int = 16,
     checked: bool = True,
+    start: Start | None = None,
 ) -> Exported:
     """Make a case of a manufactured solution on one grid, for another solver.
 
@@ -78,6 +80,8 @@ def export(
         Number of output steps.
     checked
         Whether values to check the sources with are made; they take as long as all the rest.
+    start
+        Time levels that are given by force; None: the case as it is.
 
     Returns
     -------
@@ -95,6 +99,8 @@ def export(
     steps, dt = time_steps(solution, dx, courant)
     layout = solution.layout(dx, ppc)
     code = programs(exact.fields)
+    if start:
+        code[0] = programs(start.fields(exact.fields, dt))[0]
     heading = Heading(f"{label(names.solution)} in {label(names.material)}", len(solution.lower), width(solution),
                       ", ".join(COMPONENTS[len(solution.lower)]))  # fmt: skip
     sources = {name: language.files(code, heading) for name, language in LANGUAGES.items()}
@@ -111,7 +117,8 @@ def export(
     )  # fmt: skip
     force, fields = selfcheck(code, exact.fields, solution, material, layout) if checked else ({}, {})
     texts = {file: text for files in sources.values() for file, text in files.items()}
-    return Exported(record, particles(exact, layout, material.rho0, dt), force, fields, texts)
+    columns = particles(exact, layout, material.rho0, dt)
+    return Exported(record, start.particles(columns) if start else columns, force, fields, texts)
 
 
 def numbers(values: Floats) -> tuple[float, ...]:

@@ -9,7 +9,7 @@ from typing import Any
 
 from mpm_verify.cases.harness.study import QuantityPlan, Study, head
 from mpm_verify.cases.harness.verdicts import Finding
-from mpm_verify.cases.judging.records import Action, Wanted
+from mpm_verify.cases.judging.records import Action, Outcome, ReasonCode, Wanted
 from mpm_verify.reports.sentences import any_code, verdicts
 from mpm_verify.solver.failure import FailureKind
 from mpm_verify.solver.plugins import is_file, split
@@ -47,6 +47,28 @@ def decides(study: Study[Any], found: Finding, folder: Path | None = None) -> st
     if run.given and wanted:
         return any_code.advice(wanted, run.by, [level.h for level in found.levels], run.exact)
     return command(study, found, folder)
+
+
+LOW = 1.8  # order below which time levels may be to blame
+
+
+def levels(study: Study[Any], found: Sequence[Finding], folder: Path) -> str:
+    """Command that gives a solver of somebody else other time levels, where its order is low; empty elsewhere."""
+    if study.command.split()[:2] != ["verify", "mms"] or not any(map(levels_to_blame, found)):
+        return ""
+    cells = sorted({run.cells for run in study.runs})[-2:]
+    words = [word for word in shlex.split(study.command) if word != "--quick"]
+    words = replaced(replaced(words, "--cells", ",".join(map(str, cells))), "--start", "all")
+    return shlex.join([*words, "--out", f"{os.path.relpath(folder)}-levels"])
+
+
+def levels_to_blame(found: Finding) -> bool:
+    """Whether time levels may be why a solver of somebody else has not the order that is expected."""
+    verdict, solver = found.verdict, str(getattr(found.plan.run, "solver", ""))
+    if not found.plan.judged or not solver or verdict.outcome is Outcome.PASS:
+        return False
+    low = verdict.observed is not None and 0 < verdict.observed < LOW
+    return low or verdict.reason.code is ReasonCode.TIME_STEP_COUPLED
 
 
 def courants(study: Study[Any], plan: QuantityPlan[Any]) -> tuple[float, ...]:

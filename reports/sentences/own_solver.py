@@ -28,3 +28,27 @@ def hints(results: Iterable[Any]) -> list[str]:
         if getattr(result.run, "solver", "") and result.status == "finished":
             finest[result.run.method, result.run.solution] = result
     return [hint(name, value) for result in finest.values() for name, value in result.values.items() if name in HINTS]
+
+
+LEVELS = {
+    "half": "v at −dt/2", "zero": "v at 0", "now": "F and sigma at 0", "before": "F and sigma at −dt",
+    "start": "b at the start of the step", "end": "b at its end",
+}  # fmt: skip
+
+
+def start(name: str) -> str:
+    """Time levels of a start in words."""
+    return ", ".join(LEVELS[part] for part in name.split("."))
+
+
+def starts(orders: dict[str, float], low: float = 1.8, high: float = 2.3) -> str:
+    """Sentence on the orders of u by start, the time levels that were given by force; empty where there are not two."""
+    if len(orders) < 2:
+        return ""
+    fit = {name: order for name, order in orders.items() if low <= order <= high}
+    rest = [order for name, order in orders.items() if name not in fit]
+    others = f"; with the others {min(rest):.2f} to {max(rest):.2f}" if rest else ""
+    if not fit:
+        return f"No time levels give order 2: the orders are {min(rest):.2f} to {max(rest):.2f}."
+    best = "; ".join(f"{order:.2f} with {start(name)}" for name, order in fit.items())
+    return f"Order {best}{others}."

@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
-from mpm_verify.cases.mms.run import AXES, QUICK, Run
+from mpm_verify.cases.mms.run import AXES, QUICK, STARTS, Run
 from mpm_verify.verify.options import study_command, values
 
 Replicates = Annotated[
@@ -25,6 +25,8 @@ def mms(
     """Convergence of MPM and its family to a manufactured solution: errors, observed orders, verdict, HTML report."""
     from mpm_verify.verify.run import Settings, conduct, study_of, usage
 
+    if asked.get("start") == ["all"]:
+        asked["start"] = list(STARTS)
     if judged_as:
         asked["method"] = [judged_as]
     with usage():

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from itertools import zip_longest
+from math import log
 from pathlib import Path
 from typing import Any
 
@@ -49,13 +50,27 @@ def show(record: Record, page: Path | None, console: Console | None = None) -> N
     for finding in found:
         if finding.stall:
             out.print(stall(record, finding, finding.stall))
-    for line in own_solver.hints(record.results.values()):
+    lines = own_solver.hints(record.results.values())
+    for line in [*lines, *filter(None, [own_solver.starts(by_start(record))])]:
         out.print(f"HINT  {line}", markup=False)
+    if levels := commands.levels(study, found, record.store.folder):
+        out.print(f"  this would tell which time levels it needs: {levels}", soft_wrap=True, markup=False)
     if not any(f.plan.judged for f in found):
-        theirs = any(getattr(run, "solver", "") for run in study.runs)
+        theirs = any(getattr(run, "solver", "") and not run.start for run in study.runs)
         hint = "; say what is expected: --order 2, or --as METHOD" if theirs else ""
         out.print(f"INCONCLUSIVE: nothing here has a registered expectation, so nothing is judged{hint}.")
     where(out, page, "\nMore quantities and norms, figures, and how it was made:")
+
+
+def by_start(record: Record) -> dict[str, float]:
+    """Last local order of u by start, of a solver of somebody else that was given time levels by force."""
+    found: dict[str, float] = {}
+    for series in record.series:
+        errors = record.errors(series, "u", "rms")
+        if getattr(series.first, "start", "") and len(errors) > 1:
+            (coarse, e), (fine, f) = errors[-2:]
+            found[series.first.start] = log(e / f) / log(fine.cells / coarse.cells)
+    return found
 
 
 def where(out: Console, page: Path | None, words: str = "") -> None:

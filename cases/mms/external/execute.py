@@ -23,6 +23,7 @@ from mpm_verify.mms.export.case import Exported, Names, export
 from mpm_verify.mms.export.files import files
 from mpm_verify.mms.export.process import Ended
 from mpm_verify.mms.export.process import run as run_program
+from mpm_verify.mms.export.start import named
 from mpm_verify.solver.failure import Failure, FailureKind, RunFailed
 from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS, create
 
@@ -70,7 +71,9 @@ def in_process(run: Run, case: Exported) -> Result:
     X, dt = np.stack([case.particles["X"], case.particles["Y"]], axis=-1), case.record.dt
     started = time.perf_counter()
     try:
-        frames, told = called(run.solver, Case(case.record, case.particles, exact.b), X, case.record.dx / sqrt(run.ppc))
+        start = named(run.start)
+        force = start.force(exact.b, dt) if start else exact.b
+        frames, told = called(run.solver, Case(case.record, case.particles, force), X, case.record.dx / sqrt(run.ppc))
         found, why = compare(exact, X, case.particles["V0"], dt, frames, told), hints(exact, X, dt, frames, told)
     except RunFailed as error:
         failure = error.failure
@@ -93,7 +96,9 @@ def exported(run: Run) -> Exported:
     """Content of the case folder."""
     solution, material = create(SOLUTIONS, run.solution), create(MATERIALS, run.material)
     names = Names(run.solution, run.material)
-    return export(names, solution, material, run.cells, run.ppc, run.courant, FRAMES, checked=False)
+    return export(
+        names, solution, material, run.cells, run.ppc, run.courant, FRAMES, checked=False, start=named(run.start)
+    )
 
 
 def answered(run: Run, case: Exported, out: Path, told: Levels) -> tuple[Found, dict[str, float]]:
