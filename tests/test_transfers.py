@@ -423,8 +423,8 @@ def test_order_in_time(name: str) -> None:
     assert min(slopes(list(last))) > 1.4  # in space it converges to another motion: towards first order in the end
     assert (unstaggered / modified).min() > 35
     assert 1.05 < min(slopes(list(modified))) < 1.4
-    assert first == pytest.approx(modified, rel=0.05)  # the same but for where in a step F is taken
-    assert first[0] == pytest.approx(3.03e-7, rel=0.03)
+    assert (first / modified).max() < 1.02  # the same but for where in a step F is taken
+    assert first[0] == pytest.approx({"mpm": 3.03e-7, "cpdi": 2.53e-7}[name], rel=0.03)
 
 
 A0, L0 = np.array([0.4, -0.9]), np.array([[3.0, -7.0], [11.0, 5.0]])
