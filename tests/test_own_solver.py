@@ -23,6 +23,8 @@ from mpm_verify.cases.mms.run import STARTS, Run
 from mpm_verify.mms.export.case import Names, export
 from mpm_verify.mms.export.start import named
 from mpm_verify.mms.manufacture import manufacture
+from mpm_verify.reports.export.junit import write_junit
+from mpm_verify.reports.export.summary import markdown
 from mpm_verify.reports.sentences import failures, own_solver
 from mpm_verify.solver.failure import FailureKind, RunFailed
 from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS, create
@@ -556,3 +558,31 @@ def test_no_start_that_fits_is_said_too() -> None:
     assert own_solver.starts({}) == own_solver.starts({"half.now.start": 2.0}) == ""
     said = own_solver.starts({"half.now.start": 1.02, "zero.now.end": 0.98})
     assert said == "No time levels give order 2: the orders are 0.98 to 1.02."
+
+
+def test_round_numbers_do_not_make_a_floor(tmp_path: Path) -> None:
+    """Positions of a lattice have four digits; velocities beside them show that seventeen are written."""
+    for step in STEPS:
+        table_ = rows(step)
+        table_[:, 3:5] = X
+        csv(tmp_path, step, table_)
+    frames = {step: read(tmp_path, step, X, 0.125) for step in STEPS}
+    assert compare(EXACT, X, LAYOUT.V0, DT, frames, USUAL).floor["u"] < 1e-16
+
+
+def pulling_is_pushing(case: Case) -> Any:
+    """The exact answer but for the sign of the stress."""
+    start, found = case.array("X"), {}
+    for step in case.record.frames:
+        t = step * case.record.dt
+        found[step] = {"x": start + EXACT.u(start, t) * (1 + case.record.dx**2), "sigma": -EXACT.sigma(start, t)}
+    return found
+
+
+def test_hints_reach_a_ci_job(tmp_path: Path) -> None:
+    """In JUnit, in the Markdown summary, and as a value of the run."""
+    done = called(tmp_path, pulling_is_pushing)
+    write_junit(tmp_path / "out.xml", done.record)
+    for text in ((tmp_path / "out.xml").read_text(), markdown(done.record)):
+        assert "sigma fits with the other sign" in text
+    assert all("sigma_sign" in result.values for result in done.record.results.values())

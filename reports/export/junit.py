@@ -10,7 +10,7 @@ from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.cases.judging.records import Outcome
 from mpm_verify.reports import words
 from mpm_verify.reports.frames import Record
-from mpm_verify.reports.sentences import commands, failures, stalls
+from mpm_verify.reports.sentences import commands, failures, own_solver, stalls
 
 
 def writable(path: Path | None, option: str) -> None:
@@ -56,7 +56,8 @@ def _verdict(suite: Any, record: Record, finding: Finding) -> None:
         kind = "error" if v.outcome is Outcome.ERROR else "failure"
         ElementTree.SubElement(case, kind, type=str(v.outcome), message=said)
     stall = [stalls.where(finding.stall) + ".", *stalls.reasons(finding.stall)] if finding.stall else []
-    ElementTree.SubElement(case, "system-out").text = "\n".join([said, *stall])
+    hints = own_solver.hints(result for result in finding.results if result)
+    ElementTree.SubElement(case, "system-out").text = "\n".join([said, *stall, *hints])
 
 
 def _check(suite: Any, study: str, check: Check) -> None:

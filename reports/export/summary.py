@@ -2,7 +2,7 @@
 
 from mpm_verify.reports import words
 from mpm_verify.reports.frames import Record
-from mpm_verify.reports.sentences import commands, verdicts
+from mpm_verify.reports.sentences import commands, own_solver, verdicts
 
 MARKS = {"PASS": "✅", "FAIL": "❌", "INCONCLUSIVE": "❔", "ERROR": "⚠️"}
 
@@ -20,6 +20,7 @@ def markdown(record: Record) -> str:
                      words.order(v.observed), verdicts.registered(plan.expectation),
                      commands.reason(study, f))  # fmt: skip
             lines.append(f"| {' | '.join(map(escaped, cells))} |")
+    lines += [f"- {escaped(hint)}" for hint in own_solver.hints(record.results.values())]
     if found.checks:
         missed = [check for check in found.checks if check.outcome != "PASS"]
         lines += ["", f"{len(found.checks) - len(missed)} of {len(found.checks)} checks pass."]

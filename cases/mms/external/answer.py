@@ -5,7 +5,6 @@ result_<step>.csv (or .tsv, .npz, .vtu) has a row a particle, in any order: `id`
 """
 
 import json
-import re
 from dataclasses import dataclass, field
 from decimal import Decimal, InvalidOperation
 from pathlib import Path
@@ -105,7 +104,7 @@ def framed(columns: dict[str, Any], X: Floats, spacing: float, file: str, step: 
     """Frame of columns as they were written, in the order of X (P,2). Raises RunFailed."""
     try:
         numbers = {name: np.asarray(values, dtype=np.float64) for name, values in columns.items()}
-        resolution = {name: rounding(values) for name, values in columns.items()}
+        resolution = rounding(columns)
     except (ValueError, TypeError):
         raise RunFailed(FailureKind.UNREADABLE, step, names={"file": file}) from None
     if len({len(values) for values in numbers.values()}) > 1 or not numbers:
@@ -219,21 +218,35 @@ def others(found: int, expected: int, file: str, step: int) -> RunFailed:
     return RunFailed(FailureKind.OTHER_PARTICLES, step, numbers=numbers, names={"file": file})
 
 
-def rounding(values: Any) -> float:
-    """Standard deviation of the rounding of a column, from its digits or its type; 0 where it has none."""
-    if values.dtype.kind in "iu":
-        return 0.0
-    if values.dtype.kind == "f":
-        size = float(np.sqrt(np.mean(np.square(values, dtype=np.float64)))) if len(values) else 0.0
-        return float(np.finfo(values.dtype).eps * size / np.sqrt(12.0))
-    some = values[:: max(1, len(values) // SAMPLE)]
-    try:
-        told = [Decimal(word.strip().replace("d", "e").replace("D", "e")) for word in some if re.search(r"\d", word)]
-    except InvalidOperation:
-        raise ValueError("not a number") from None
-    told = [one for one in told if one.is_finite() and one != 0]
-    digits = max((len(one.as_tuple().digits) for one in told), default=17)
-    fixed = not any(re.search(r"[eEdD]", word) for word in some)
-    decimals = max((-int(one.as_tuple().exponent) for one in told), default=17) if fixed else 400
-    ulps = [max(10.0 ** (one.adjusted() - digits + 1), 10.0**-decimals) for one in told]
-    return float(np.sqrt(np.mean(np.square(ulps)) / 12)) if ulps else 0.0
+def rounding(columns: dict[str, Any]) -> dict[str, float]:
+    """Standard deviation of the rounding of each column, from its type, or from the digits that the texts have.
+
+    Numbers that happen to be round have few: so the digits are those of the column that has most.
+    """
+    texts = {name: some(values) for name, values in columns.items() if name != "id" and values.dtype.kind not in "fiu"}
+    told = [number for numbers in texts.values() for number, _ in numbers]
+    digits = max((len(number.as_tuple().digits) for number in told), default=17)
+    fixed = not any(power for numbers in texts.values() for _, power in numbers)
+    decimals = max((-int(number.as_tuple().exponent) for number in told), default=17) if fixed else 400
+    found = {}
+    for name, values in columns.items():
+        if name in texts:
+            ulps = [max(10.0 ** (number.adjusted() - digits + 1), 10.0**-decimals) for number, _ in texts[name]]
+            found[name] = float(np.sqrt(np.mean(np.square(ulps)) / 12)) if ulps else 0.0
+        elif values.dtype.kind == "f" and len(values):
+            size = np.sqrt(np.mean(np.square(values, dtype=np.float64)))
+            found[name] = float(np.finfo(values.dtype).eps * size / np.sqrt(12.0))
+    return found
+
+
+def some(values: Any) -> list[tuple[Decimal, bool]]:
+    """Finite numbers of some texts, but zero, and whether each has a power of ten. Raises ValueError."""
+    found = []
+    for word in values[:: max(1, len(values) // SAMPLE)]:
+        try:
+            number = Decimal(word.strip().lower().replace("d", "e"))
+        except InvalidOperation:
+            raise ValueError("not a number") from None
+        if number.is_finite() and number != 0:
+            found.append((number, "e" in word.lower() or "d" in word.lower()))
+    return found
