@@ -586,3 +586,29 @@ def test_hints_reach_a_ci_job(tmp_path: Path) -> None:
     for text in ((tmp_path / "out.xml").read_text(), markdown(done.record)):
         assert "sigma fits with the other sign" in text
     assert all("sigma_sign" in result.values for result in done.record.results.values())
+
+
+def test_a_program_that_was_built_anew_is_run_anew(verify: Call, tmp_path: Path) -> None:
+    """One without an ending, asked for in the same words in the same folder: the old study is not taken for it."""
+    program = tmp_path / "mine"
+    words = [
+        "mms",
+        "--solver",
+        f"{program} {{case}} {{out}}",
+        "--cells",
+        "4",
+        "--order",
+        "2",
+        "--out",
+        "study",
+        "--json",
+    ]
+    said = []
+    for text in ("first", "second"):
+        program.write_text(f"#!/bin/sh\necho {text}\nexit 1\n")
+        program.chmod(0o755)
+        code, out, _ = verify(*words, "--json")
+        assert code == 4
+        said.append({run["solver_version"] for run in json.loads(out)["runs"]})
+    assert len(said[0]) == len(said[1]) == 1
+    assert said[0] != said[1]

@@ -2,7 +2,7 @@
 
 import hashlib
 import os
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -29,7 +29,12 @@ def study(asked: Asked, command: str, folder: Path) -> Study[Any]:
 
 
 def named(asked: Asked) -> str:
-    """Hash of what is asked for and of the files that build a study of it; empty where a user's file is among them."""
+    """Hash of what is asked for and of the files that build a study of it; empty where something of a user's is asked.
+
+    That may have changed since: a file, or the program of a command.
+    """
+    if any(item.metadata.get("whole") for item in fields(asked.contract.Run) if item.name in asked.values):
+        return ""
     given = [asked.case, *(value for values in asked.values.values() for value in values)]
     if any(isinstance(value, str) and ".py" in value for value in given):  # a material's parameter may be a file too
         return ""
