@@ -9,8 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from mpm_verify.cases.mms.external.answer import Frame, Levels, framed, spread, stated
+from mpm_verify.cases.mms.external.answer import Frame, framed
 from mpm_verify.cases.mms.external.command import PYTHON
+from mpm_verify.cases.mms.external.components import spread
+from mpm_verify.cases.mms.external.levels import Levels, stated
 from mpm_verify.mms.export.record import CaseRecord
 from mpm_verify.solver.failure import FailureKind, RunFailed
 from mpm_verify.solver.own_file import shortened

@@ -13,11 +13,12 @@ import numpy as np
 from mpm_verify.cases.harness.environment import environment
 from mpm_verify.cases.harness.study import Arrays, parameters
 from mpm_verify.cases.mms.exact import audited, manufactured
-from mpm_verify.cases.mms.external.answer import Levels, levels, read
+from mpm_verify.cases.mms.external.answer import read
 from mpm_verify.cases.mms.external.callables import Case, called
 from mpm_verify.cases.mms.external.command import PYTHON, filled
 from mpm_verify.cases.mms.external.errors import Found, compare
 from mpm_verify.cases.mms.external.hints import hints
+from mpm_verify.cases.mms.external.levels import Levels, levels
 from mpm_verify.cases.mms.run import Result, Run
 from mpm_verify.mms.export.case import Exported, Names, export
 from mpm_verify.mms.export.files import files

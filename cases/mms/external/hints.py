@@ -5,7 +5,8 @@ from math import inf, sqrt
 
 import numpy as np
 
-from mpm_verify.cases.mms.external.answer import Frame, Levels
+from mpm_verify.cases.mms.external.answer import Frame
+from mpm_verify.cases.mms.external.levels import Levels
 from mpm_verify.mms.manufacture import Manufactured
 from mpm_verify.solver.state import Floats
 
