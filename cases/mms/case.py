@@ -11,6 +11,7 @@ from typing import Any
 from mpm_verify.cases.harness.build import Asked
 from mpm_verify.cases.judging.records import Expectation
 from mpm_verify.cases.mms.expectations import JUDGED_QUANTITY, expected
+from mpm_verify.cases.mms.external import column_map
 from mpm_verify.cases.mms.external.command import PYTHON, program, version
 from mpm_verify.cases.mms.run import AXES, NORMS, QUANTITIES, QUICK, Result, Run
 from mpm_verify.cases.mms.stability import check_time_steps
@@ -33,6 +34,7 @@ __all__ = ["AXES", "JUDGED", "NORMS", "QUANTITIES", "QUICK", "Result", "Run"]
 
 JUDGED = (JUDGED_QUANTITY,)
 OURS = ("transfer", "stress", "layout", "staggered", "offset")  # fields that a solver of somebody else does not take
+ALONE = ("start", "columns")  # and fields that the reference solver does not take
 THEIRS = {"cells": (8, 16, 32, 64), "ppc": (4,)}  # values that nobody asks for of such a solver
 SCHEME = {"transfer": "flip", "stress": "usl", "layout": "uniform"}  # the one that expectations are registered for
 
@@ -55,6 +57,8 @@ def canonical(values: dict[str, Any]) -> dict[str, Any]:
     values["material"] = canonical_name(MATERIALS, values.get("material") or create(SOLUTIONS, solution).material)
     values["transfer"] = canonical_name(TRANSFERS, values.get("transfer", Run.transfer))
     values["layout"] = canonical_name(LAYOUTS, values.get("layout", Run.layout))
+    if values.get("columns"):
+        values["columns"] = column_map.read(values["columns"])
     if values.get("solver"):
         values["solver_version"] = values.get("solver_version") or version_of(values["solver"])
     if values.get("solver") and "method" not in values:
@@ -77,8 +81,11 @@ def version_of(solver: str) -> str:
 def check(runs: Sequence[Run]) -> None:
     """Raise ValueError with one line for a solution, material or layout that cannot be run."""
     check_theirs([run for run in runs if run.solver])
-    if any(run.start and not run.solver for run in runs):
-        raise ValueError("--start is for a solver of your own; give --solver too")
+    for name in ALONE:
+        if any(getattr(run, name) != getattr(Run, name) and not run.solver for run in runs):
+            raise ValueError(f"--{name} is for a solver of your own; give --solver too")
+    if any(run.columns and run.solver.startswith(PYTHON) for run in runs):
+        raise ValueError("--columns is for files; a Python function returns arrays by our names")
     cells: dict[tuple[str, str, str], set[int]] = {}
     for run in runs:
         cells.setdefault((run.solution, run.material, run.layout), set()).add(run.cells)

@@ -49,6 +49,7 @@ class Run(RunRecord):
         "", "Solver of your own: a command such as './mine {case} {out}', see docs/own-solver.md.", whole=True
     )
     solver_version: str = axis("", "Version of that solver; usual is a hash of the files that its command names.")
+    columns: str = axis("", "Map of the columns that it writes, a TOML file; see docs/own-solver.md.", whole=True)
     order: float = axis(0.0, "Order expected of u; 0: what is registered of the method.", named=False)
     start: str = axis("", "Time levels that it is given by force, see docs/own-solver.md; or all.", choices=STARTS)
     time_limit: float = axis(600.0, "Seconds that a run of a solver of your own may take.", named=False)

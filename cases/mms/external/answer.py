@@ -59,11 +59,13 @@ def read(out: Path, step: int, X: Floats, spacing: float) -> Frame:
     return framed(table(path, step), X, spacing, path.name, step)
 
 
-def framed(columns: dict[str, Any], X: Floats, spacing: float, file: str, step: int) -> Frame:
-    """Frame of columns as they were written, in the order of X (P,2). Raises RunFailed."""
+def framed(
+    columns: dict[str, Any], X: Floats, spacing: float, file: str, step: int, digits: dict[str, float] | None = None
+) -> Frame:
+    """Frame of columns, in the order of X (P,2), whose rounding is `digits` or told as they are. Raises RunFailed."""
     try:
         numbers = {name: np.asarray(values, dtype=np.float64) for name, values in columns.items()}
-        resolution = rounding(columns)
+        resolution = rounding(columns) if digits is None else digits
     except (ValueError, TypeError):
         raise RunFailed(FailureKind.UNREADABLE, step, names={"file": file}) from None
     if len({len(values) for values in numbers.values()}) > 1 or not numbers:
@@ -72,7 +74,7 @@ def framed(columns: dict[str, Any], X: Floats, spacing: float, file: str, step: 
         if name not in numbers:
             raise RunFailed(FailureKind.NO_COLUMN, step, names={"file": file, "column": name})
     order = matched(numbers, X, spacing, file, step)
-    found, digits = {}, {}
+    found, sizes = {}, {}
     for quantity, names in QUANTITIES.items():
         if not all(name in numbers for name in names):
             continue
@@ -81,5 +83,5 @@ def framed(columns: dict[str, Any], X: Floats, spacing: float, file: str, step: 
             particle = int(np.argwhere(~np.isfinite(values).all(axis=1))[0, 0])
             raise RunFailed(FailureKind.NOT_FINITE, step, particle, names={"file": file})
         found[quantity] = values
-        digits[quantity] = float(np.sqrt(sum(resolution.get(name, 0.0) ** 2 for name in names)))
-    return Frame(found, digits)
+        sizes[quantity] = float(np.sqrt(sum(resolution.get(name, 0.0) ** 2 for name in names)))
+    return Frame(found, sizes)

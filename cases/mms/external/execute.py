@@ -15,10 +15,12 @@ from mpm_verify.cases.harness.study import Arrays, parameters
 from mpm_verify.cases.mms.exact import audited, manufactured
 from mpm_verify.cases.mms.external.answer import read
 from mpm_verify.cases.mms.external.callables import Case, called
+from mpm_verify.cases.mms.external.column_map import parsed
 from mpm_verify.cases.mms.external.command import PYTHON, filled
 from mpm_verify.cases.mms.external.errors import Found, compare
 from mpm_verify.cases.mms.external.hints import hints
-from mpm_verify.cases.mms.external.levels import Levels, levels
+from mpm_verify.cases.mms.external.levels import USUAL, Levels, levels
+from mpm_verify.cases.mms.external.mapped import read as read_mapped
 from mpm_verify.cases.mms.run import Result, Run
 from mpm_verify.mms.export.case import Exported, Names, export
 from mpm_verify.mms.export.files import files
@@ -56,7 +58,7 @@ def execute(run: Run, tick: Callable[[float], None] = lambda fraction: None) -> 
         log = last_lines(out / LOG, ended)
         try:
             check(ended, run.time_limit, log)
-            told = levels(out)
+            told = levels(out, parsed(run.columns).levels if run.columns else USUAL)
             found, why = answered(run, case, out, told)
         except RunFailed as error:
             failure = error.failure
@@ -106,8 +108,11 @@ def answered(run: Run, case: Exported, out: Path, told: Levels) -> tuple[Found, 
     """Errors of the frames, and hints. Raises RunFailed for an answer that is missing or cannot be read."""
     X = np.stack([case.particles["X"], case.particles["Y"]], axis=-1)
     spacing = case.record.dx / sqrt(run.ppc)
-    frames = {step: read(out, step, X, spacing) for step in case.record.frames}
-    exact, dt = manufactured(run.solution, run.material), case.record.dt
+    exact, steps, dt = manufactured(run.solution, run.material), case.record.frames, case.record.dt
+    if run.columns:
+        frames = read_mapped(out, parsed(run.columns), steps, dt, X, spacing)
+    else:
+        frames = {step: read(out, step, X, spacing) for step in steps}
     return compare(exact, X, case.particles["V0"], dt, frames, told), hints(exact, X, dt, frames, told)
 
 

@@ -1,42 +1,52 @@
 """Time levels of an answer, as its result.json states them."""
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from mpm_verify.solver.failure import FailureKind, RunFailed
 
-LEVELS = {"v_lag": 0.5, "F_lag": 0.0}  # steps that v and F with sigma are behind x, where result.json does not say
+LAGS = ("v_lag", "F_lag")
+FARTHEST = 2.0  # steps that a field may be behind or before x
+FORCES = ("start", "end")  # of a step, whose body force it takes
 
 
 @dataclass(frozen=True)
 class Levels:
-    """Time levels of an answer: steps that v, and F with sigma, are behind x; and what it calls its version."""
+    """Time levels of an answer: steps that v, and F with sigma, are behind x; and what it calls its version.
 
-    v_lag: float = LEVELS["v_lag"]
-    F_lag: float = LEVELS["F_lag"]
+    `b` is the end of a step whose body force it takes, start or end; empty where it does not say.
+    """
+
+    v_lag: float = 0.5
+    F_lag: float = 0.0
     version: str = ""
+    b: str = ""
 
 
-def levels(out: Path) -> Levels:
-    """Time levels that result.json tells; the usual ones where there is no such file. Raises RunFailed."""
+USUAL = Levels()  # where nobody says anything
+
+
+def levels(out: Path, usual: Levels = USUAL) -> Levels:
+    """Time levels that result.json tells; the usual ones where it does not, or is not there. Raises RunFailed."""
     path = out / "result.json"
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError:
-        return Levels()
+        return usual
     except (OSError, ValueError, RecursionError):
         raise RunFailed(FailureKind.UNREADABLE, -1, names={"file": path.name}) from None
-    return stated(data, path.name)
+    return stated(data, path.name, usual)
 
 
-def stated(data: Any, file: str) -> Levels:
+def stated(data: Any, file: str, usual: Levels = USUAL) -> Levels:
     """Time levels of a mapping. Raises RunFailed for what is none."""
     try:
-        told = {key: float(data[key]) for key in LEVELS if key in data}
-        if not all(abs(lag) <= 2 for lag in told.values()):
+        told = {key: float(data[key]) for key in LAGS if key in data}
+        b = data.get("b", usual.b)
+        if not all(abs(lag) <= FARTHEST for lag in told.values()) or b not in ("", *FORCES):
             raise ValueError
-        return Levels(**told, version=str(data.get("version", ""))[:80])
+        return replace(usual, **told, version=str(data.get("version", ""))[:80], b=b)
     except (ValueError, TypeError, AttributeError):
         raise RunFailed(FailureKind.UNREADABLE, -1, names={"file": file}) from None

@@ -1,5 +1,6 @@
 """Readers of the files of an answer, by their ending: columns by name, as they are written."""
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -9,18 +10,21 @@ from mpm_verify.cases.mms.external.components import spread
 from mpm_verify.solver.failure import FailureKind, RunFailed
 
 ENDINGS = ("csv", "tsv", "txt", "npz", "vtu")
+Columns = Mapping[str, Any]  # arrays (P,...) by name: texts or numbers, as they stand in the file
 
 
 def table(path: Path, step: int) -> dict[str, Any]:
-    """Columns of a file by name, as they are written. Raises RunFailed."""
+    """Columns of a file by name, each of one component. Raises RunFailed."""
     try:
-        return {".npz": arrays, ".vtu": mesh}.get(path.suffix, text)(path)
+        stored = dict({".npz": arrays, ".vtu": mesh}.get(path.suffix, text)(path))
+        points = {"x": stored.pop("points")} if path.suffix == ".vtu" else {}
+        return spread({**points, **stored})
     except Exception:  # of three libraries, for anything that is not such a file
         raise RunFailed(FailureKind.UNREADABLE, step, names={"file": path.name}) from None
 
 
-def text(path: Path) -> dict[str, Any]:
-    """Columns of a CSV or TSV file, as they are written."""
+def text(path: Path) -> Columns:
+    """Columns of a CSV or TSV file, or of one with spaces, as they are written."""
     import pandas as pd
 
     head = next((line for line in path.read_text(encoding="utf-8-sig").splitlines() if line.strip()), "")
@@ -29,16 +33,21 @@ def text(path: Path) -> dict[str, Any]:
     return {str(name).strip().lstrip("# "): frame[name].fillna("nan").to_numpy(dtype=str) for name in frame.columns}
 
 
-def arrays(path: Path) -> dict[str, Any]:
-    """Columns of a .npz file: one array a column, or arrays X, x, v, F, sigma of several."""
+def arrays(path: Path) -> Columns:
+    """Arrays of a .npz file."""
     with np.load(path, allow_pickle=False) as stored:
-        return spread({name: stored[name] for name in stored.files})
+        return {name: stored[name] for name in stored.files}
 
 
-def mesh(path: Path) -> dict[str, Any]:
-    """Columns of a .vtu file: its points are x, its point data the rest."""
+def mesh(path: Path) -> Columns:
+    """Points of a .vtu or .vtk file, with the data of points, and of cells that are one point each."""
     import meshio
 
-    read_ = meshio.read(path)
-    data = {name: np.asarray(values) for name, values in read_.point_data.items()}
-    return spread({"x": np.asarray(read_.points)[:, :2], **data})
+    read = (meshio.vtk if path.suffix == ".vtk" else meshio.vtu).read(str(path))  # meshio.read ends the process
+    data = {name: np.asarray(values) for name, values in read.point_data.items()}
+    corners = [np.asarray(block.data) for block in read.cells]
+    if corners and all(points.ndim == 2 and points.shape[1] == 1 for points in corners):
+        order = np.argsort(np.concatenate(corners)[:, 0])
+        if len(order) == len(read.points):
+            data = {name: np.concatenate(blocks)[order] for name, blocks in read.cell_data.items()} | data
+    return {"points": np.asarray(read.points), **data}
