@@ -103,7 +103,7 @@ class Comparison:
 
     @property
     def sentences(self) -> list[str]:
-        """What came out, where the two part, and what is not told apart."""
+        """Lines on what came out, where the two part, and what is not told apart."""
         return [digits.outcome(self.compared), *digits.sentences(self.compared)]
 
     @property

@@ -9,12 +9,12 @@ from mpm_verify.cases.harness.environment import environment
 from mpm_verify.cases.harness.store import Store, make
 from mpm_verify.cases.mms.digits.examine import Examined
 from mpm_verify.reports import words
+from mpm_verify.reports.components.digits import table
 from mpm_verify.reports.components.examined import Section, render
 from mpm_verify.reports.components.page import Add
 from mpm_verify.reports.export.digits import document
 from mpm_verify.reports.figures.difference import difference
 from mpm_verify.reports.sentences import digits
-from mpm_verify.reports.tables.digits import table
 from mpm_verify.solver.plugins import label
 
 BADGES = {"AGREES": "PASS", "PARTS": "FAIL"}

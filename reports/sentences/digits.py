@@ -47,7 +47,7 @@ def outcome(found: Compared) -> str:
         agree = f"{of} agree to {digits(least)} digits or more in {listed(near.agreement)}"
         return f"The nearest reference is {name}: {agree}."
     kinds = [("rms values", near.digits)] + [("particles", near.particles)] * found.framed
-    agree = "; ".join(f"{kind} agree to {each(values)} digits" for kind, values in kinds)
+    agree = "; ".join(f"digits of {kind} are {each(values)}" for kind, values in kinds)
     nobody = [q for q in found.parts if all(one.agreement.get(q, 0.0) < AGREES for one in found.against)]
     most = max((one.agreement.get(q, 0.0) for q in nobody for one in found.against), default=0.0)
     none = f"In {listed(nobody)} no reference agrees to more than {digits(most)} digits" if nobody else (
@@ -65,7 +65,7 @@ def parting(one: Parting, first: bool = True) -> str:
     """Sentence on where a quantity parts from the nearest reference."""
     x, y = one.X
     part = f", {percent(one.difference / one.size)} of the reference's rms error there" if one.size > 0 else ""
-    most = f"particle {one.particle}, X = ({x:g}, {y:g}), is off by {words.short(one.difference)}{part}"
+    most = f"particle {one.particle}, X = ({x:g}, {y:g}), is off by {words.sci(one.difference)}{part}"
     return f"{words.quantity(one.quantity)} parts{' first,' * first} at frame {one.frame} (step {one.step}): {most}."
 
 

@@ -11,7 +11,7 @@ import typer
 
 from mpm_verify.solver.plugins import MATERIALS, METHODS, SOLUTIONS, TRANSFERS
 from mpm_verify.verify.choices import choices, completing, completion
-from mpm_verify.verify.options import Json, Page, Threads, split
+from mpm_verify.verify.options import Json, Threads, split
 from mpm_verify.verify.terminal.output import printing
 
 if TYPE_CHECKING:
@@ -69,7 +69,9 @@ def compare(
     out: Annotated[
         Path | None, typer.Option(help="Folder of the page.", show_default="results/compare-NAME-SOLUTION-CELLS")
     ] = None,
-    page: Page = None,
+    page: Annotated[
+        bool | None, typer.Option("--page/--no-page", help="Draw the page.", show_default="page, unless --json")
+    ] = None,
     json_output: Json = False,
 ) -> int:
     """Hold an answer against runs of the reference. Exit codes: 0 agrees, 1 parts, 3 too few digits, 4 no answer."""

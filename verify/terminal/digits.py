@@ -6,9 +6,9 @@ from rich.table import Table
 from rich.text import Text
 
 from mpm_verify.cases.mms.digits.examine import Examined
+from mpm_verify.reports.components.digits import table
 from mpm_verify.reports.pages._digits import title
 from mpm_verify.reports.sentences import digits
-from mpm_verify.reports.tables.digits import table
 from mpm_verify.verify.terminal.table import STYLES, Listened
 
 COLOURS = {"AGREES": STYLES["PASS"], "PARTS": STYLES["FAIL"]}

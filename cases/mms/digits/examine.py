@@ -17,7 +17,7 @@ from mpm_verify.solver.failure import Failure
 from mpm_verify.solver.layout import parallelograms
 from mpm_verify.solver.state import Floats
 
-NEAREST = 6  # references of a stored case that are run: those nearest by rms values
+NEAREST = 9  # references of a stored case that are run: those nearest by rms values
 Tick = Callable[[int, int], None]
 
 
