@@ -73,12 +73,13 @@ def alike(found: tuple[Alike, ...]) -> list[str]:
     """Sentences on references that are not told apart here, those with one case that tells them apart in one."""
     cases: dict[str, list[str]] = {}
     for one in found:
-        told = f"{label(one.solution)} on {one.cells} cells" if one.cells else ""
+        told = f"{one.solution} on {one.cells} cells" if one.cells else ""
         cases.setdefault(told, []).append(scheme(one.scheme))
     said = []
     for told, names in cases.items():
-        then = f"; {told} tells {'them' if len(names) > 1 else 'it'} apart from the nearest" if told else ""
-        said.append(f"All digits shown of {'; of '.join(names)} are those of the nearest{then}.")
+        then = f"; {told} tells {'them' if len(names) > 1 else 'it'} apart" if told else ""
+        have = "have" if len(names) > 1 else "has"
+        said.append(f"Not told apart here: {'; '.join(names)} {have} all digits shown of the nearest{then}.")
     return said
 
 

@@ -86,4 +86,5 @@ def telling(one: Scheme, other: Scheme) -> Alike:
     found = [(agreement(known[one], known[other]), case) for case, known in table().items()
              if known.get(one) and known.get(other)]  # fmt: skip
     best, case = min(found, key=lambda pair: pair[0], default=(SHOWN, Case("", 0)))
-    return Alike(other, case.solution, case.cells, best) if best < APART else Alike(other)
+    typed = {canonical(SOLUTIONS, name): name for name in CASES}
+    return Alike(other, typed.get(case.solution, ""), case.cells, best) if best < APART else Alike(other)
