@@ -7,9 +7,9 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from mpm_verify.verify.api import Judgement, StoredStudy, judge, judge_table, load, manufacture, study
+    from mpm_verify.verify.api import Judgement, StoredStudy, compare, judge, judge_table, load, manufacture, study
 
-__all__ = ["Judgement", "StoredStudy", "__version__", "judge", "judge_table", "load", "manufacture", "study"]
+__all__ = ["Judgement", "StoredStudy", "__version__", "compare", "judge", "judge_table", "load", "manufacture", "study"]
 
 
 def __getattr__(name: str) -> Any:

@@ -15,7 +15,8 @@ TOP = Path(__file__).resolve().parent.parent
 NEEDED = {"sweep": ["figure3"], "material": ["linear_elastic"], "audit": ["bar"], "report": ["study"],
           "example": ["python", "case"],
           "diff": ["study", "other"], "export": ["bump", "--to", "case", "--cells", "4"],
-          "check-force": ["study"], "judge": [str(TOP / "docs" / "examples" / "errors.csv")]}  # fmt: skip
+          "check-force": ["study"], "compare": ["--solver", "./study {case} {out}"],
+          "judge": [str(TOP / "docs" / "examples" / "errors.csv")]}  # fmt: skip
 QUICK = {"methods": ["--quick"], "mms": ["--quick"], "wave_bar": ["--quick"]}
 Spoken = tuple[int, str, str]
 Call = Callable[..., Spoken]

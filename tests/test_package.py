@@ -51,6 +51,7 @@ def test_the_wheel_holds_files_under_one_name(wheel: Path) -> None:
         "reports/templates/report.css",
         "mms/export/templates/drivers/driver.c.in",
         "cases/column/studies/figure5.toml",
+        "cases/mms/digits/digits.csv",
     ):
         assert f"mpm_verify/{file}" in names
 

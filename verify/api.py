@@ -9,7 +9,7 @@ done.frames()["errors"]                                    # a pandas.DataFrame
 mv.judge(cells=[8, 16, 32, 64], errors=[4e-3, 1e-3, 2.5e-4, 6.2e-5], order=2).reason
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from mpm_verify.cases.harness.study import Study
     from mpm_verify.mms.manufacture import Manufactured
     from mpm_verify.reports.frames import Record
+    from mpm_verify.verify.comparing import Comparison
 
 
 def manufacture(solution: str, material: str = "", rho0: float | None = None) -> "Manufactured":
@@ -117,6 +118,56 @@ def conducted(asked: "Study[Any]", out: Path | str | None, jobs: int | None = 1,
         store.create(asked)
         compute(asked, store, settings)
     return load(settings.folder)
+
+
+def compare(
+    solver: "str | Callable[[Any], Any]",
+    solution: str = "clamped_shear",
+    *,
+    material: str = "",
+    cells: int = 16,
+    ppc: int = 4,
+    courant: float = 0.4,
+    method: Sequence[str] = (),
+    stress: Sequence[str] = (),
+    transfer: Sequence[str] = (),
+    stored: bool = False,
+    threads: int = 1,
+    time_limit: float = 600.0,
+) -> "Comparison":
+    """Hold a solver of your own against runs of the reference, digit by digit, as `verify compare` does.
+
+    Parameters
+    ----------
+    solver
+        Command such as './mine {case} {out}', or a Python function of a case, see docs/own-solver.md.
+    solution, material, cells, ppc, courant
+        Case that both run.
+    method, stress, transfer
+        References: every combination of these bases, stress updates and transfers; empty: the usual ones.
+    stored
+        Whether stored rms values are enough, and no reference is run.
+    threads
+        Threads of a run of the reference.
+    time_limit
+        Seconds that the solver may take.
+
+    Returns
+    -------
+    Comparison
+        The nearest reference, digits that agree by quantity, where the two part, and the page.
+
+    Raises
+    ------
+    ValueError
+        With one line for what cannot be run.
+    """
+    from mpm_verify.verify.comparing import Comparison, examined_of, run_of, schemes_of
+
+    run = run_of(solver, solution, material, cells=cells, ppc=ppc, courant=courant, time_limit=time_limit)
+    found = examined_of(run, schemes_of(method, stress, transfer), stored, threads)
+    name = getattr(solver, "__qualname__", repr(solver))
+    return Comparison(found, f"mpm_verify.compare({name}, {solution!r}, cells={cells})")
 
 
 def load(folder: Path | str) -> "StoredStudy":

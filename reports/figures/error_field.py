@@ -49,7 +49,7 @@ def error_field(run: Run, arrays: Arrays) -> Figure:
         patches.set(array=error, linewidths=outline or 0.2, rasterized=True)
         patches.set_clim(0.0, float(np.nanmax(error)) or 1.0)
         axes.add_collection(patches)
-        axes.set(aspect="equal", xlabel="x", ylabel="y", xlim=_limits(corners, 0), ylim=_limits(corners, 1))
+        axes.set(aspect="equal", xlabel="x", ylabel="y", xlim=limits(corners, 0), ylim=limits(corners, 1))
         bar = figure.colorbar(patches, ax=axes, location="bottom", shrink=0.9, aspect=28, pad=0.02)
         bar.locator, bar.formatter = MaxNLocator(4), FuncFormatter(style.number)
         bar.set_label("|error of u| at the last step")
@@ -59,7 +59,7 @@ def error_field(run: Run, arrays: Arrays) -> Figure:
     return figure
 
 
-def _limits(corners: NDArray[np.float64], axis: int) -> tuple[float, float]:
+def limits(corners: NDArray[np.float64], axis: int) -> tuple[float, float]:
     """Limits of an axis: the domains, with a little air."""
     values = corners[..., axis][np.isfinite(corners[..., axis])]
     low, high = (float(values.min()), float(values.max())) if len(values) else (0.0, 1.0)

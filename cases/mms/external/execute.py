@@ -3,7 +3,7 @@
 import tempfile
 import time
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cache
 from math import sqrt
 from pathlib import Path
@@ -13,7 +13,7 @@ import numpy as np
 from mpm_verify.cases.harness.environment import environment
 from mpm_verify.cases.harness.study import Arrays, parameters
 from mpm_verify.cases.mms.exact import audited, manufactured
-from mpm_verify.cases.mms.external.answer import read
+from mpm_verify.cases.mms.external.answer import Frame, read
 from mpm_verify.cases.mms.external.callables import Case, called
 from mpm_verify.cases.mms.external.column_map import parsed
 from mpm_verify.cases.mms.external.command import PYTHON, filled
@@ -29,17 +29,46 @@ from mpm_verify.mms.export.process import run as run_program
 from mpm_verify.mms.export.start import named
 from mpm_verify.solver.failure import Failure, FailureKind, RunFailed
 from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS, create
+from mpm_verify.solver.state import Floats
 
 FRAMES = 16
 LOG, LINES, WIDTH = "log.txt", 5, 300  # of the log, the last lines that are kept with the Result
 ROUND = float(np.finfo(np.float64).eps)
 
 
+@dataclass(frozen=True)
+class Answer:
+    """Answer of a solver: its frames by step, what it states, and how it ended; no frames where it failed."""
+
+    frames: dict[int, Frame]
+    told: Levels
+    failure: Failure | None = None
+    wall_s: float = 0.0
+    log: tuple[str, ...] = ()
+    exit_code: int | None = None
+
+
 def execute(run: Run, tick: Callable[[float], None] = lambda fraction: None) -> tuple[Result, Arrays]:
     """Run the program to its end, or to where it fails: that is a Result too. `tick` hears the fraction of frames."""
     case = exported(run)
-    if run.solver.startswith(PYTHON):
-        return in_process(run, case), {}
+    answer = answered(run, case, tick)
+    found, why = Found({}, {}, {}), dict[str, float]()
+    if answer.frames:
+        exact, X, dt = manufactured(run.solution, run.material), positions(case), case.record.dt
+        found = compare(exact, X, case.particles["V0"], dt, answer.frames, answer.told)
+        why = hints(exact, X, dt, answer.frames, answer.told)
+    result = result_of(run, case, found, answer.failure)
+    return replace(result, wall_s=answer.wall_s, log=answer.log, exit_code=answer.exit_code,
+                   told=answer.told.version, values=why), {}  # fmt: skip
+
+
+def answered(run: Run, case: Exported, tick: Callable[[float], None] = lambda fraction: None) -> Answer:
+    """Answer of a command or of a Python function to a case."""
+    return in_process(run, case) if run.solver.startswith(PYTHON) else by_command(run, case, tick)
+
+
+def by_command(run: Run, case: Exported, tick: Callable[[float], None]) -> Answer:
+    """Answer of a command, in a folder that is removed."""
     with tempfile.TemporaryDirectory(prefix="mpm-verify-") as top:
         folder, out = Path(top) / "case", Path(top) / "out"
         out.mkdir()
@@ -54,35 +83,34 @@ def execute(run: Run, tick: Callable[[float], None] = lambda fraction: None) -> 
         started = time.perf_counter()
         ended = run_program(words, out, run.time_limit, into=LOG, memory=room, look=look, here=Path.cwd())
         wall = time.perf_counter() - started
-        failure, found, told, why = None, Found({}, {}, {}), Levels(), dict[str, float]()
+        failure, frames, told = None, dict[int, Frame](), Levels()
         log = last_lines(out / LOG, ended)
         try:
             check(ended, run.time_limit, log)
             told = levels(out, parsed(run.columns).levels if run.columns else USUAL)
-            found, why = answered(run, case, out, told)
+            frames = frames_of(run, case, out)
         except RunFailed as error:
             failure = error.failure
-        result = result_of(run, case, found, failure)
-        result = replace(result, wall_s=wall, log=log, exit_code=ended.code, told=told.version,
-                         values=why)  # fmt: skip
-    return result, {}
+        return Answer(frames, told, failure, wall, log, ended.code)
 
 
-def in_process(run: Run, case: Exported) -> Result:
-    """Result of a Python function."""
-    exact, failure, found, told, why = manufactured(run.solution, run.material), None, Found({}, {}, {}), Levels(), {}
-    X, dt = np.stack([case.particles["X"], case.particles["Y"]], axis=-1), case.record.dt
+def in_process(run: Run, case: Exported) -> Answer:
+    """Answer of a Python function."""
+    exact, failure, frames, told = manufactured(run.solution, run.material), None, dict[int, Frame](), Levels()
     started = time.perf_counter()
     try:
         start = named(run.start)
-        force = start.force(exact.b, dt) if start else exact.b
-        frames, told = called(run.solver, Case(case.record, case.particles, force), X, case.record.dx / sqrt(run.ppc))
-        found, why = compare(exact, X, case.particles["V0"], dt, frames, told), hints(exact, X, dt, frames, told)
+        force = start.force(exact.b, case.record.dt) if start else exact.b
+        given = Case(case.record, case.particles, force)
+        frames, told = called(run.solver, given, positions(case), case.record.dx / sqrt(run.ppc))
     except RunFailed as error:
         failure = error.failure
-    return replace(
-        result_of(run, case, found, failure), wall_s=time.perf_counter() - started, told=told.version, values=why
-    )
+    return Answer(frames, told, failure, time.perf_counter() - started)
+
+
+def positions(case: Exported) -> Floats:
+    """Reference positions (P,2) of the particles of a case."""
+    return np.stack([case.particles["X"], case.particles["Y"]], axis=-1)
 
 
 def check(ended: Ended, seconds: float, log: tuple[str, ...]) -> None:
@@ -104,16 +132,12 @@ def exported(run: Run) -> Exported:
     )
 
 
-def answered(run: Run, case: Exported, out: Path, told: Levels) -> tuple[Found, dict[str, float]]:
-    """Errors of the frames, and hints. Raises RunFailed for an answer that is missing or cannot be read."""
-    X = np.stack([case.particles["X"], case.particles["Y"]], axis=-1)
-    spacing = case.record.dx / sqrt(run.ppc)
-    exact, steps, dt = manufactured(run.solution, run.material), case.record.frames, case.record.dt
+def frames_of(run: Run, case: Exported, out: Path) -> dict[int, Frame]:
+    """Frames that a program has written, by step. Raises RunFailed for what is missing or cannot be read."""
+    X, spacing, steps = positions(case), case.record.dx / sqrt(run.ppc), case.record.frames
     if run.columns:
-        frames = read_mapped(out, parsed(run.columns), steps, dt, X, spacing)
-    else:
-        frames = {step: read(out, step, X, spacing) for step in steps}
-    return compare(exact, X, case.particles["V0"], dt, frames, told), hints(exact, X, dt, frames, told)
+        return read_mapped(out, parsed(run.columns), steps, case.record.dt, X, spacing)
+    return {step: read(out, step, X, spacing) for step in steps}
 
 
 def result_of(run: Run, case: Exported, found: Found, failure: Failure | None) -> Result:
