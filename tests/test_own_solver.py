@@ -356,11 +356,11 @@ DIGITS = {
     "clamped_shear:G=1e-6": (7.253e-8, 3.208e-8, 1.787e-8, 7.873e-9, 4.415e-9),
     "bump": (4.139e-8, None, 1.079e-8, None, 2.737e-9),
 }
-NEEDS = {"python": "", "cpp": "c++"}
+NEEDS = {"python": "", "numpy-class": "", "cpp": "c++", "fortran": "gfortran", "julia": "julia"}
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("language", ["python", "cpp"])
+@pytest.mark.parametrize("language", NEEDS)
 @pytest.mark.parametrize("solution", DIGITS)
 def test_the_examples_have_the_digits_of_other_programs(
     verify: Call, tmp_path: Path, language: str, solution: str

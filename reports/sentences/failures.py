@@ -57,6 +57,8 @@ def theirs(failure: Failure) -> str:
         return f"the solver has not written {file}"
     if k is FailureKind.UNREADABLE:
         return f"{file} cannot be read"
+    if k is FailureKind.NOT_FINITE:
+        return f"a value that is not finite in {file}"
     if k is FailureKind.NO_COLUMN:
         return f"{file} has no column {failure.names['column']}"
     if k is FailureKind.OTHER_PARTICLES:

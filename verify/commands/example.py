@@ -10,7 +10,10 @@ from mpm_verify.verify.terminal.output import printing
 FOLDER = Path(__file__).absolute().parents[2] / "cases" / "mms" / "external" / "examples"
 LANGUAGES = {  # what is typed beside --solver, and what it needs
     "python": "python {here}/solver.py {{case}} {{out}}",
+    "numpy-class": "python {here}/adapter.py {{case}} {{out}}",
     "cpp": "{here}/run.sh {{case}} {{out}}",
+    "fortran": "{here}/run.sh {{case}} {{out}}",
+    "julia": "julia {here}/solver.jl {{case}} {{out}}",
 }
 
 

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+MOST = 140  # power of ten of a number whose rounding can be squared
 SAMPLE = 200  # numbers that the digits of a file are told from
 
 
@@ -37,6 +38,6 @@ def some(values: Any) -> list[tuple[Decimal, bool]]:
             number = Decimal(word.strip().lower().replace("d", "e"))
         except InvalidOperation:
             raise ValueError("not a number") from None
-        if number.is_finite() and number != 0:
+        if number.is_finite() and abs(number.adjusted()) < MOST and number != 0:
             found.append((number, "e" in word.lower() or "d" in word.lower()))
     return found

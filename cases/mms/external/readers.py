@@ -30,13 +30,19 @@ def text(path: Path) -> Columns:
     head = next((line for line in path.read_text(encoding="utf-8-sig").splitlines() if line.strip()), "")
     mark = next((mark for mark in ";\t," if mark in head), r"\s+")
     frame = pd.read_csv(path, sep=mark, dtype=str, encoding="utf-8-sig", skipinitialspace=True, index_col=False)
+    names = [name.strip() for name in (head.split(mark) if mark != r"\s+" else head.split())]
+    if len(set(names)) < len(names):
+        raise ValueError("a column twice")
     return {str(name).strip().lstrip("# "): frame[name].fillna("nan").to_numpy(dtype=str) for name in frame.columns}
 
 
 def arrays(path: Path) -> Columns:
     """Arrays of a .npz file."""
-    with np.load(path, allow_pickle=False) as stored:
-        return {name: stored[name] for name in stored.files}
+    with path.open("rb") as file, np.load(file, allow_pickle=False) as stored:
+        found = {name: stored[name] for name in stored.files}
+    if any(values.dtype.kind == "c" for values in found.values()):
+        raise ValueError("complex numbers")
+    return found
 
 
 def mesh(path: Path) -> Columns:
