@@ -32,7 +32,7 @@ from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS, create
 
 FRAMES = 16
 LOG, LINES, WIDTH = "log.txt", 5, 300  # of the log, the last lines that are kept with the Result
-ROUND = float(np.finfo(np.float64).eps)
+ROUND = {"double": float(np.finfo(np.float64).eps), "single": float(np.finfo(np.float32).eps)}
 
 
 def execute(run: Run, tick: Callable[[float], None] = lambda fraction: None) -> tuple[Result, Arrays]:
@@ -64,7 +64,7 @@ def execute(run: Run, tick: Callable[[float], None] = lambda fraction: None) -> 
             failure = error.failure
         result = result_of(run, case, found, failure)
         result = replace(result, wall_s=wall, log=log, exit_code=ended.code, told=told.version,
-                         values=why)  # fmt: skip
+                         values=why | told.numbers)  # fmt: skip
     return result, {}
 
 
@@ -81,7 +81,10 @@ def in_process(run: Run, case: Exported) -> Result:
     except RunFailed as error:
         failure = error.failure
     return replace(
-        result_of(run, case, found, failure), wall_s=time.perf_counter() - started, told=told.version, values=why
+        result_of(run, case, found, failure),
+        wall_s=time.perf_counter() - started,
+        told=told.version,
+        values=why | told.numbers,
     )
 
 
@@ -100,7 +103,16 @@ def exported(run: Run) -> Exported:
     solution, material = create(SOLUTIONS, run.solution), create(MATERIALS, run.material)
     names = Names(run.solution, run.material)
     return export(
-        names, solution, material, run.cells, run.ppc, run.courant, FRAMES, checked=False, start=named(run.start)
+        names,
+        solution,
+        material,
+        run.cells,
+        run.ppc,
+        run.courant_number,
+        FRAMES,
+        checked=False,
+        start=named(run.start),
+        precision=run.precision,  # type: ignore[arg-type]
     )
 
 
@@ -121,7 +133,7 @@ def result_of(run: Run, case: Exported, found: Found, failure: Failure | None) -
     finite = all(np.isfinite(list(norms.values())).all() for norms in found.errors.values())
     if not failure and not finite:
         failure = Failure(FailureKind.ERROR_NOT_FINITE, case.record.steps)
-    walk = ROUND * float(np.sqrt(case.record.steps))
+    walk = ROUND[run.precision] * float(np.sqrt(case.record.steps))
     extent = float(np.ptp(case.particles["X"]))
     size = {**found.scale, "u": extent, "F": 1.0}
     floor = {q: float(max(digits, walk * size[q])) for q, digits in found.floor.items()}
