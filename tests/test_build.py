@@ -22,6 +22,10 @@ from mpm_verify.solver.plugins import CASES, available
 from mpm_verify.verify.main import main
 from mpm_verify.verify.options import values
 
+MAP = (
+    '{"columns": {"id": {"from": "id"}, "x": {"from": "x"}}, "files": "p{step}.csv", "format": "text", '
+    '"frames": "step"}'
+)  # the text of a map, as a run has it
 SAMPLES: dict[str, dict[str, str]] = {  # of each case two values of each field, as they are typed
     "mms": {
         "method": "cpdi,gimp", "solution": "axis_aligned,bar", "material": "neo_hookean,linear_elastic",
@@ -29,6 +33,7 @@ SAMPLES: dict[str, dict[str, str]] = {  # of each case two values of each field,
         "staggered": "yes,no", "force": "no,yes", "offset": "0.25,-0.125", "layout": "uniform,graded",
         "solver": f"{sys.executable} {{{{case}}}} {{{{out}}}}", "solver_version": "1,2", "order": "2,1",
         "time_limit": "60,120", "memory_limit": "0,1000", "start": "half.now.start,zero.now.end",
+        "precision": "double,single", "time_step": "h,h2", "columns": MAP.replace("{", "{{").replace("}", "}}"),
     },
     "wave_bar": {
         "method": "cpdi,mpm", "material": "neo_hookean,linear_elastic", "cells": "8,16", "ppc": "4,9",
@@ -56,6 +61,8 @@ WITH: dict[tuple[str, str], dict[str, str]] = {  # what else has to be asked for
     ("element", "path"): {"test": "path"},
     ("element", "units"): {"test": "path", "path": "{here}/one.csv"},
     ("mms", "start"): {"solver": f"{sys.executable} {{{{case}}}} {{{{out}}}}"},
+    ("mms", "precision"): {"solver": f"{sys.executable} {{{{case}}}} {{{{out}}}}"},
+    ("mms", "columns"): {"solver": f"{sys.executable} {{{{case}}}} {{{{out}}}}"},
     ("mms", "solver_version"): {"solver": f"{sys.executable} {{{{case}}}} {{{{out}}}}"},
 }
 UNNAMED = ("order", "time_limit", "memory_limit")  # fields that say nothing of the numbers

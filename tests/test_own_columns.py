@@ -322,6 +322,9 @@ def test_levels_of_a_map_hold_where_result_json_says_nothing(tmp_path: Path) -> 
     (tmp_path / "result.json").write_text('{"v_lag": 0.5, "version": "3", "b": "end"}')
     assert levels(tmp_path, usual) == Levels(0.5, 1.0, "3", "end")
     assert mapped(tmp_path, f'files = "p{{step}}.csv"\n{PLAIN}').levels == Levels()
+    (tmp_path / "result.json").write_text('{"b": "middle"}')
+    with pytest.raises(RunFailed, match="unreadable"):
+        levels(tmp_path)
 
 
 # ---- what cannot be read

@@ -40,6 +40,11 @@ class Run(RunRecord):
             raise ValueError(f"cells = {self.cells} is not a level; a cell size is above zero and finite")
 
     @property
+    def tied(self) -> bool:
+        """Whether there is no time step to be halved."""
+        return self.steady
+
+    @property
     def h(self) -> float:
         """Cell size, in the unit of the table; that of one over cells in cells."""
         return 1 / self.cells

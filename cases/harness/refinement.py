@@ -39,9 +39,9 @@ class Series:
 
     @property
     def halved(self) -> Run | None:
-        """The finest run with half the time step, if the study has it; itself where there is no time step."""
+        """The finest run with half the time step, if the study has it; itself where none is to be halved."""
         finest = self.runs[-1]
-        if getattr(finest, "steady", False):
+        if finest.tied:
             return finest
         half = replace(finest, courant=finest.courant / 2)
         return next((run for run in self.times if run == half), None)
@@ -93,7 +93,7 @@ def complete(
         largest[head(run)] = max(run.cells, largest.get(head(run), 0))
     finest = [run for run in runs if run.cells == largest[head(run)]]
     asked = {plan.head for plan in plans if plan.judged and plan.expectation and plan.expectation.order is not None}
-    halved = [replace(run, courant=run.courant / 2) for run in finest if head(run) in asked]
+    halved = [replace(run, courant=run.courant / 2) for run in finest if head(run) in asked and not run.tied]
     timed = [replace(run, courant=courant) for run in finest for courant in sorted(set(times), reverse=True)]
     shifted = [replace(run, offset=offset) for run in runs for offset in offsets(replicates)[1:]]
     return tuple(dict.fromkeys([*runs, *halved, *timed, *shifted]))

@@ -77,6 +77,11 @@ class RunRecord:
         return False
 
     @property
+    def tied(self) -> bool:
+        """Whether there is no time step that could be halved apart from the cells."""
+        return False
+
+    @property
     def digest(self) -> str:
         """Name of the Result: hash of the parameters and of all that computes the run, 16 hex digits."""
         return self.named()

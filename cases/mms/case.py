@@ -26,6 +26,8 @@ from mpm_verify.solver.plugins import (
     create,
     is_file,
     label,
+    load,
+    split,
 )
 from mpm_verify.solver.plugins import canonical as canonical_name
 from mpm_verify.solver.stress_update import check_stress_update
@@ -34,7 +36,7 @@ __all__ = ["AXES", "JUDGED", "NORMS", "QUANTITIES", "QUICK", "Result", "Run"]
 
 JUDGED = (JUDGED_QUANTITY,)
 OURS = ("transfer", "stress", "layout", "staggered", "offset")  # fields that a solver of somebody else does not take
-ALONE = ("start", "columns")  # and fields that the reference solver does not take
+ALONE = ("start", "columns", "precision")  # and fields that the reference solver does not take
 THEIRS = {"cells": (8, 16, 32, 64), "ppc": (4,)}  # values that nobody asks for of such a solver
 SCHEME = {"transfer": "flip", "stress": "usl", "layout": "uniform"}  # the one that expectations are registered for
 
@@ -53,7 +55,8 @@ def title(runs: Sequence[Run]) -> str:
 
 def canonical(values: dict[str, Any]) -> dict[str, Any]:
     """Specifications with only the parameters that differ from their defaults, and the solution's own material."""
-    solution = values["solution"] = canonical_name(SOLUTIONS, values.get("solution", Run.solution))
+    solution = in_precision(values.get("solution", Run.solution), values.get("precision", Run.precision))
+    values["solution"] = solution
     values["material"] = canonical_name(MATERIALS, values.get("material") or create(SOLUTIONS, solution).material)
     values["transfer"] = canonical_name(TRANSFERS, values.get("transfer", Run.transfer))
     values["layout"] = canonical_name(LAYOUTS, values.get("layout", Run.layout))
@@ -67,6 +70,20 @@ def canonical(values: dict[str, Any]) -> dict[str, Any]:
         values["method"] = canonical_name(METHODS, values.get("method", Run.method))
     check_stress_update(values.get("stress", Run.stress))
     return values
+
+
+def in_precision(solution: str, precision: str) -> str:
+    """Canonical specification of a solution, with the parameters of single precision where none are given.
+
+    There they are always stated: a default amplitude that was asked for stays it.
+    """
+    name, given = split(solution)
+    usual = {} if precision != "single" or is_file(name) else getattr(load(SOLUTIONS, name), "in_single", {})
+    named = {item.partition("=")[0].strip() for item in given.split(",")}
+    items = [*filter(None, [given]), *(f"{key}={value:g}" for key, value in usual.items() if key not in named)]
+    short = canonical_name(SOLUTIONS, ":".join(filter(None, [name, ",".join(items)])))
+    left = [f"{key}={getattr(create(SOLUTIONS, short), key):g}" for key in usual if f"{key}=" not in short]
+    return f"{short}{',' if ':' in short else ':'}{','.join(left)}" if left else short
 
 
 def version_of(solver: str) -> str:
@@ -113,6 +130,8 @@ def check_theirs(runs: Sequence[Run]) -> None:
 def parts(asked: Asked) -> list[Asked]:
     """Parts of the request, with cells that fill the body of each solution, where no cells were asked for."""
     solutions = asked.values.get("solution", (Run.solution,))
+    if len(set(asked.values.get("start", ()))) > 1:  # a search for the one that fits
+        asked = replace(asked, values={**asked.values, "order": (0.0,)})
     if any(asked.values.get("solver", ())) and not asked.quick:
         asked = replace(asked, values={**THEIRS, **asked.values})
     if "cells" in asked.values or not any(is_file(one) for one in solutions):
@@ -132,11 +151,12 @@ def multiple(run: Run) -> int:
 
 def expectation(run: Run, quantity: str, norm: str) -> Expectation | None:
     """Registered expectation, of the usual scheme alone; recorded errors hold for the usual time step and start."""
+    if run.order:
+        path = " along dt ~ h2" if run.tied else ""
+        return Expectation(run.order, source=f"given with --order{path}") if (quantity, norm) in JUDGED else None
     if run.start:
         return None
-    if run.order:
-        return Expectation(run.order, source="given with --order") if (quantity, norm) in JUDGED else None
     if any(getattr(run, name) != usual for name, usual in SCHEME.items()):
         return None
-    usual = run.courant == Run.courant and run.staggered
+    usual = run.courant == Run.courant and run.time_step == Run.time_step and run.staggered
     return expected(run.method, run.solution, run.material, run.ppc, quantity, norm, usual)

@@ -74,8 +74,8 @@ class Comparison:
 def setup(run: Run) -> tuple[Model, Comparison, int]:
     """Model at t = 0, what compares it with the exact solution, and the number of steps.
 
-    dt = courant dx / C, shortened so that whole steps fill the duration. x, F and sigma start exact, v exact at -dt/2;
-    with update-stress-first F and sigma start at -dt: the first step takes them to where its forces need them.
+    dt = courant_number dx / C, shortened so that whole steps fill the duration. x, F and sigma start exact, v exact at
+    -dt/2; with update-stress-first F and sigma start at -dt: the first step takes them to where its forces need them.
     """
     solution: Any = create(SOLUTIONS, run.solution)
     material: Any = create(MATERIALS, run.material)
@@ -83,7 +83,7 @@ def setup(run: Run) -> tuple[Model, Comparison, int]:
     lower, upper = grid_box(solution, dx)
     shift = -dx * np.array(run.offset) if moves_grid(solution) else np.zeros(2)
     grid = Grid(dx, lower + shift, upper + shift)
-    steps, dt = time_steps(solution, grid.dx, run.courant)
+    steps, dt = time_steps(solution, grid.dx, run.courant_number)
     lag = 0.5 * dt if run.staggered else 0.0
     F_lag = dt if run.staggered and run.stress == "usf" else 0.0
 

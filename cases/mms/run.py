@@ -12,6 +12,9 @@ from mpm_verify.solver.stress_update import Stress
 QUANTITIES = ("u", "v", "F", "sigma")
 NORMS = ("rms", "max", "final", "printed")
 STARTS = tuple(f"{v}.{F}.{b}" for v in ("half", "zero") for F in ("now", "before") for b in ("start", "end"))
+PRECISIONS = ("double", "single")
+PATHS = ("h", "h2")  # of dt as cells get finer
+BEGIN = 8  # cells at which both paths have the same C dt / dx
 AXES = {"cells": (8, 16, 32, 64, 128), "ppc": (1, 4, 9)}  # values that nobody asks for; of the rest the defaults
 QUICK = {"cells": (8, 12, 16, 24, 32), "ppc": (4,)}
 
@@ -52,6 +55,10 @@ class Run(RunRecord):
     columns: str = axis("", "Map of the columns that it writes, a TOML file; see docs/own-solver.md.", whole=True)
     order: float = axis(0.0, "Order expected of u; 0: what is registered of the method.", named=False)
     start: str = axis("", "Time levels that it is given by force, see docs/own-solver.md; or all.", choices=STARTS)
+    precision: str = axis("double", "Precision that it computes with: double, single.", choices=PRECISIONS)
+    time_step: str = axis(
+        "h", "Path of dt as cells get finer: h, or h2, with C dt / dx that of --courant times 8 / cells.", choices=PATHS
+    )
     time_limit: float = axis(600.0, "Seconds that a run of a solver of your own may take.", named=False)
     memory_limit: float = axis(0.0, "Address space that it may have, MB; 0: any.", named=False)
     case: ClassVar[str] = "mms"
@@ -68,6 +75,10 @@ class Run(RunRecord):
 
         if self.start and self.start not in STARTS:
             raise ValueError(f"start = {self.start!r} must be one of {', '.join(STARTS)}")
+        if self.precision not in PRECISIONS:
+            raise ValueError(f"precision = {self.precision!r} must be one of {', '.join(PRECISIONS)}")
+        if self.time_step not in PATHS:
+            raise ValueError(f"time_step = {self.time_step!r} must be one of {', '.join(PATHS)}")
         if not (0 <= self.order <= 10 and self.time_limit > 0 and self.memory_limit >= 0):
             raise ValueError("order must be from 0 to 10, time_limit above 0, and memory_limit 0 or more")
 
@@ -83,6 +94,16 @@ class Run(RunRecord):
         return {name: known[name] for name in ("solution", "material")} if self.solver else known
 
     @property
+    def courant_number(self) -> float:
+        """C dt / dx on these cells."""
+        return self.courant if self.time_step == "h" else self.courant * BEGIN / self.cells
+
+    @property
+    def tied(self) -> bool:
+        """Whether the order is one along a path of dt and dx, so that dt is not halved apart from it."""
+        return self.time_step != "h"
+
+    @property
     def again(self) -> bool:
         """Whether a failed Result is run again: somebody may have mended the solver, or the machine."""
         return bool(self.solver)
@@ -90,7 +111,7 @@ class Run(RunRecord):
     @property
     def cost(self) -> float:
         """Particle updates, up to a factor."""
-        return self.cells**3 * self.ppc / self.courant
+        return self.cells**3 * self.ppc / self.courant_number
 
     @property
     def updates(self) -> float:

@@ -11,7 +11,7 @@ from mpm_verify.mms.discretisation import grid_box, output_steps, time_steps, wi
 from mpm_verify.mms.export.language import Heading
 from mpm_verify.mms.export.languages import LANGUAGES
 from mpm_verify.mms.export.program import AXES, COMPONENTS, Program, programs
-from mpm_verify.mms.export.record import FORMAT, CaseRecord, MaterialRecord
+from mpm_verify.mms.export.record import FORMAT, CaseRecord, MaterialRecord, Precision
 from mpm_verify.mms.export.selfcheck import at_position, checked, rows
 from mpm_verify.mms.export.start import Start
 from mpm_verify.mms.manufacture import Manufactured, manufacture
@@ -63,6 +63,7 @@ def export(
     frames: int = 16,
     checked: bool = True,
     start: Start | None = None,
+    precision: Precision = "double",
 ) -> Exported:
     """Make a case of a manufactured solution on one grid, for another solver.
 
@@ -82,6 +83,8 @@ def export(
         Whether values to check the sources with are made; they take as long as all the rest.
     start
         Time levels that are given by force; None: the case as it is.
+    precision
+        Precision that the solver computes with.
 
     Returns
     -------
@@ -111,7 +114,7 @@ def export(
         lower=numbers(solution.lower), upper=numbers(solution.upper),
         grid_lower=numbers(lower), grid_upper=numbers(upper), cells=cells, dx=dx, ppc=ppc, particles=len(layout),
         edges=edges(solution), duration=float(solution.duration), steps=steps, dt=dt, courant=courant,
-        frames=output_steps(steps, frames), t_half=-dt / 2, t_before=-dt,
+        frames=output_steps(steps, frames), t_half=-dt / 2, t_before=-dt, precision=precision,
         material=MaterialRecord(label(names.material), constants(material), getattr(material, "formula", "")),
         languages={name: tuple(files) for name, files in sources.items()},
     )  # fmt: skip

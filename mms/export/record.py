@@ -4,6 +4,7 @@ from dataclasses import asdict, dataclass
 from typing import Any, Final, Literal
 
 FORMAT: Final = "mpm-verify-case-1"
+Precision = Literal["double", "single"]
 Edge = Literal["fixed", "roller", "free", "prescribed"]
 
 
@@ -58,6 +59,8 @@ class CaseRecord:
         Times of the columns `_half` and `_before` of the particles: -dt/2 and -dt.
     languages
         Languages that the force is written in, with their files.
+    precision
+        Precision that the solver computes with.
     """
 
     format: Literal["mpm-verify-case-1"]
@@ -82,6 +85,7 @@ class CaseRecord:
     t_before: float
     material: MaterialRecord
     languages: dict[str, tuple[str, ...]]
+    precision: Precision = "double"
 
 
 def flat(record: CaseRecord) -> list[tuple[str, str]]:

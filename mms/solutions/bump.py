@@ -42,6 +42,7 @@ class Bump(Square):
 
     A: float = 1e-6
     boundary: ClassVar[str] = "free"
+    in_single: ClassVar[dict[str, float]] = {"A": 1e-3}  # for solvers in single precision, whose rounding is above 1e-6
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -33,7 +33,7 @@ from mpm_verify.solver.state import Floats
 
 FRAMES = 16
 LOG, LINES, WIDTH = "log.txt", 5, 300  # of the log, the last lines that are kept with the Result
-ROUND = float(np.finfo(np.float64).eps)
+ROUND = {"double": float(np.finfo(np.float64).eps), "single": float(np.finfo(np.float32).eps)}
 
 
 @dataclass(frozen=True)
@@ -57,9 +57,9 @@ def execute(run: Run, tick: Callable[[float], None] = lambda fraction: None) -> 
         exact, X, dt = manufactured(run.solution, run.material), positions(case), case.record.dt
         found = compare(exact, X, case.particles["V0"], dt, answer.frames, answer.told)
         why = hints(exact, X, dt, answer.frames, answer.told)
-    result = result_of(run, case, found, answer.failure)
+    result, numbers = result_of(run, case, found, answer.failure), answer.told.numbers
     return replace(result, wall_s=answer.wall_s, log=answer.log, exit_code=answer.exit_code,
-                   told=answer.told.version, values=why), {}  # fmt: skip
+                   told=answer.told.version, values=why | numbers), {}  # fmt: skip
 
 
 def answered(run: Run, case: Exported, tick: Callable[[float], None] = lambda fraction: None) -> Answer:
@@ -128,7 +128,16 @@ def exported(run: Run) -> Exported:
     solution, material = create(SOLUTIONS, run.solution), create(MATERIALS, run.material)
     names = Names(run.solution, run.material)
     return export(
-        names, solution, material, run.cells, run.ppc, run.courant, FRAMES, checked=False, start=named(run.start)
+        names,
+        solution,
+        material,
+        run.cells,
+        run.ppc,
+        run.courant_number,
+        FRAMES,
+        checked=False,
+        start=named(run.start),
+        precision=run.precision,  # type: ignore[arg-type]
     )
 
 
@@ -145,7 +154,7 @@ def result_of(run: Run, case: Exported, found: Found, failure: Failure | None) -
     finite = all(np.isfinite(list(norms.values())).all() for norms in found.errors.values())
     if not failure and not finite:
         failure = Failure(FailureKind.ERROR_NOT_FINITE, case.record.steps)
-    walk = ROUND * float(np.sqrt(case.record.steps))
+    walk = ROUND[run.precision] * float(np.sqrt(case.record.steps))
     extent = float(np.ptp(case.particles["X"]))
     size = {**found.scale, "u": extent, "F": 1.0}
     floor = {q: float(max(digits, walk * size[q])) for q, digits in found.floor.items()}

@@ -24,6 +24,12 @@ class Levels:
     version: str = ""
     b: str = ""
 
+    @property
+    def numbers(self) -> dict[str, float]:
+        """Steps that v, F and b are behind the end of a step, by name; b only where it is said."""
+        b = {"level_b": float(self.b == "start")} if self.b else {}
+        return {"level_v": self.v_lag, "level_F": self.F_lag, **b}
+
 
 USUAL = Levels()  # where nobody says anything
 
