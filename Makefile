@@ -2,7 +2,7 @@
 PYTHON ?= python3
 BIN = .venv/bin
 
-.PHONY: mms test slow bench lock clean
+.PHONY: mms test slow bench recorded lock clean
 
 mms: .venv/.installed
 	$(BIN)/verify mms --method cpdi
@@ -15,6 +15,10 @@ test: .venv/.installed
 
 slow: .venv/.installed
 	$(BIN)/pytest -m slow
+
+# Errors that later runs are held against; a change of a row is a change of the numbers.
+recorded: .venv/.installed
+	$(BIN)/python -m mpm_verify.cases.mms.recording
 
 bench: .venv/.installed
 	$(BIN)/pytest tests/benchmarks --benchmark-only -m "slow or not slow"

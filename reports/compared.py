@@ -74,6 +74,6 @@ def of_verdicts(a: Record, b: Record) -> Iterator[Change]:
 
 def outcomes(record: Record) -> dict[str, str]:
     """Outcome by what is judged."""
-    judged = [f for f in record.findings if f.plan.judged]
+    judged = [f for f in record.findings if f.counts]
     found = {f"{record.label(f.plan.run)}, {f.plan.quantity} {f.plan.norm}": str(f.verdict.outcome) for f in judged}
     return found | {f"{check.group}: {check.name}": str(check.outcome) for check in record.analysis.checks}

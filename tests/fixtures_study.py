@@ -12,6 +12,7 @@ from mpm_verify.cases.harness.build import Asked, build
 from mpm_verify.cases.harness.store import Arrays, Store
 from mpm_verify.cases.harness.study import QuantityPlan, Study
 from mpm_verify.cases.judging.order import Expectation
+from mpm_verify.cases.judging.records import Recorded
 from mpm_verify.cases.mms.run import NORMS, QUANTITIES, Result, Run
 from mpm_verify.mms.blind_spots import ALWAYS, BlindSpot, BlindSpotCode
 from mpm_verify.solver.failure import Failure, FailureKind
@@ -33,7 +34,9 @@ AUDIT = (
     *ALWAYS,
 )
 GAP: dict[str, float | None] = {"cpdi": 0.1, "mpm": None}  # at 8 cells
-SECOND = Expectation(2.0, 0.2, 0.3, source="Sadeghirad et al. 2011", constant=1.127e-5, constant_h=1 / 128)
+SECOND = Expectation(
+    2.0, 0.2, 0.3, source="Sadeghirad et al. 2011", recorded=(Recorded(1 / 128, 1.127e-5, 1.127e-5),), within=0.01
+)
 NONE = Expectation(None, source="Steffen, Kirby & Berzins 2008")
 ENVIRONMENT = {
     "commit": "0123456789abcdef",

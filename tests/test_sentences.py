@@ -24,7 +24,7 @@ from mpm_verify.cases.harness.store import Store
 from mpm_verify.cases.harness.study import QuantityPlan, Study
 from mpm_verify.cases.harness.verdicts import Finding, findings
 from mpm_verify.cases.judging.order import Expectation, Level, Quantity, judge
-from mpm_verify.cases.judging.records import Action, Outcome, ReasonCode, Wanted
+from mpm_verify.cases.judging.records import Action, Outcome, ReasonCode, Recorded, Wanted
 from mpm_verify.cases.judging.stall import CauseCode, Measured, explain
 from mpm_verify.cases.mms.run import NORMS, QUANTITIES, Result, Run
 from mpm_verify.reports.export.document import verdict as verdict_row
@@ -61,6 +61,11 @@ def clean(order: float = 2.0, count: int = 5) -> tuple[float, ...]:
     return tuple((H[:count] ** order).tolist())
 
 
+def known(h: float, factor: float) -> Expectation:
+    """Order 2 with a recorded error, that factor times h squared."""
+    return Expectation(2.0, recorded=(Recorded(h, factor * h**2, factor * h**2),))
+
+
 EXAMPLES = {
     ReasonCode.AS_EXPECTED: Example(clean()),
     ReasonCode.ALL_FAILED: Example((), Expectation(None, failed=FailureKind.INVERTED), (INVERTED,) * 4),
@@ -68,9 +73,12 @@ EXAMPLES = {
     ReasonCode.STALLS: Example(GIMP, STALL),
     ReasonCode.ORDER_BELOW: Example(clean(1.5)),
     ReasonCode.CONTAMINATED: Example(tuple((H**2 + 0.08 * H).tolist()), Expectation(2.0, 1.9, 0.3)),
-    ReasonCode.MAGNITUDE: Example(clean(), Expectation(2.0, constant=2 / 128**2, constant_h=1 / 128)),
+    ReasonCode.MAGNITUDE: Example(clean(), known(1 / 128, 2)),
+    ReasonCode.FAR_OFF: Example(clean(), known(1 / 256, 0.4)),
+    ReasonCode.RUN_ENDED: Example(clean(count=4), SECOND, (INVERTED,)),
+    ReasonCode.FALLS_SHORT: Example((4.8e-3, 6.7e-3, 1.4e-2, 2.6e-2)),
     ReasonCode.CONVERGES: Example(clean(), DIVERGES),
-    ReasonCode.NOTHING_FINISHED: Example((), SECOND, (INVERTED,) * 4),
+    ReasonCode.NOTHING_FINISHED: Example((), SECOND, (None,) * 4),
     ReasonCode.TOO_FEW_LEVELS: Example(clean(count=3)),
     ReasonCode.LEVEL_MISSING: Example(clean(count=4), SECOND, (None,)),
     ReasonCode.NEAR_ROUND_OFF: Example(clean(), floor=1e-5),
@@ -81,7 +89,7 @@ EXAMPLES = {
     ReasonCode.ORDER_ABOVE: Example(clean(2.4)),
     ReasonCode.ORDER_UNDECIDED: Example((2.590e-3, 7.502e-4, 1.706e-4, 4.275e-5)),
     ReasonCode.CONTAMINATION_OPEN: Example(clean(1.9)),
-    ReasonCode.MAGNITUDE_CARRIED: Example(clean(), Expectation(2.0, constant=2 / 256**2, constant_h=1 / 256)),
+    ReasonCode.MAGNITUDE_CARRIED: Example(clean(), known(1 / 256, 2)),
     ReasonCode.NEITHER: Example((1e-3, 1.1e-3, 0.9e-3, 1e-3), DIVERGES),
 }
 
@@ -305,7 +313,7 @@ def test_a_run_that_has_to_finish() -> None:
     study, results = made(EXAMPLES[ReasonCode.LEVEL_MISSING])
     (found,) = findings(study, results)
     assert commands.command(study, found) == study.command
-    study, results = made(Example(clean(count=4), SECOND, (INVERTED,)))
+    study, results = made(Example(clean(count=4), SECOND, (Failure(FailureKind.EMPTY_CELL, 7, 3, (1, 2)),)))
     (found,) = findings(study, results)
     assert found.verdict.reason.wanted == Wanted(Action.FINISH, 1 / 128, CELLS)
     assert commands.command(study, found) == ""

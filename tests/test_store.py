@@ -18,6 +18,7 @@ from mpm_verify.cases.harness.runner import pending
 from mpm_verify.cases.harness.store import Store, StoreError, case_of
 from mpm_verify.cases.harness.study import FORMAT, Study
 from mpm_verify.cases.judging.order import Expectation
+from mpm_verify.cases.judging.records import Recorded
 from mpm_verify.cases.mms.run import STARTS, Result, Run
 from mpm_verify.solver.failure import Failure, FailureKind
 from mpm_verify.solver.plugins import CASES, available
@@ -76,7 +77,11 @@ def test_numbers_come_back_to_the_last_bit(store: Store) -> None:
 
 
 def test_study_round_trip(tmp_path: Path) -> None:
-    expectations = (Expectation(2.0, source="theory", constant=1e-5, constant_h=1 / 128), Expectation(None), None)
+    expectations = (
+        Expectation(2.0, source="theory", recorded=(Recorded(1 / 128, 1e-5, 1e-5),)),
+        Expectation(None),
+        None,
+    )
     declared = tuple(fixtures.plan("cpdi", "affine", 4, "u", "rms", e is not None, e) for e in expectations)
     study = Study("mms", "title", "verify mms", (RUN, replace(RUN, force=True)), declared, case="mms")
     Store(tmp_path).create(study)

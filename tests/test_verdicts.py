@@ -13,7 +13,8 @@ from mpm_verify.cases.harness.verdicts import Finding, findings, refinement
 from mpm_verify.cases.judging.order import Expectation, Outcome, Verdict
 from mpm_verify.cases.judging.records import Action, Ended, Reason, ReasonCode, Wanted
 from mpm_verify.cases.mms import deviations
-from mpm_verify.cases.mms.expectations import later_with_9, registered, registry
+from mpm_verify.cases.mms.expectations import expected, later_with_9, registered, registry
+from mpm_verify.cases.mms.recorded import recorded
 from mpm_verify.cases.mms.run import QUANTITIES, Result, Run
 from mpm_verify.reports.sentences import verdicts
 from mpm_verify.solver.failure import Failure, FailureKind
@@ -83,6 +84,13 @@ def test_what_is_only_shown_decides_nothing(outcome: Outcome) -> None:
     assert exit_code([finding(outcome, SHOWN), finding(PASS)]) == 0
 
 
+@pytest.mark.parametrize("outcome", list(Outcome))
+def test_what_can_refute_counts_where_it_fails_alone(outcome: Outcome) -> None:
+    refutes = replace(SHOWN, refutes=True)
+    assert exit_code([finding(outcome, refutes), finding(PASS)]) == (1 if outcome is FAIL else 0)
+    assert exit_code([finding(outcome, refutes)]) == (1 if outcome is FAIL else 3)
+
+
 # ---- which runs belong to a quantity
 
 
@@ -146,15 +154,16 @@ def test_failed_level_is_named_with_its_reason() -> None:
     results = made(runs)
     failed = {**results, LEVELS[3].digest: lost(results[LEVELS[3].digest])}
     (found,) = findings(study(runs, JUDGED), failed)
-    assert found.verdict.outcome is INCONCLUSIVE
+    assert found.verdict.outcome is FAIL
     reason = found.verdict.reason
-    assert reason.code is ReasonCode.LEVEL_MISSING
+    assert reason.code is ReasonCode.RUN_ENDED
     assert reason.failed == (Ended(1 / 64, Failure(FailureKind.INVERTED, 21, 35, (2, 2))),)
-    assert "h=1/64 (det F ≤ 0 at step 21, particle 35 in cell (2, 2))" in verdicts.said(reason)
+    assert verdicts.said(reason) == "the run at h=1/64 ended with det F ≤ 0 at step 21, particle 35 in cell (2, 2)"
 
 
 def test_all_levels_failed_is_an_error() -> None:
-    results = {digest: lost(result) for digest, result in made(LEVELS).items()}
+    end = Failure(FailureKind.UNSTABLE_STEP, 0)
+    results = {digest: replace(lost(result), failure=end) for digest, result in made(LEVELS).items()}
     (found,) = findings(study(LEVELS, JUDGED), results)
     assert found.verdict.outcome is ERROR
     assert exit_code([found]) == 4
@@ -219,10 +228,47 @@ def test_judged_is_u_in_rms_with_4_and_9_per_cell(method: str, solution: str) ->
     assert known == {(quantity, ppc) for quantity in QUANTITIES for ppc in counts}
 
 
+@pytest.mark.parametrize("quantity", ["u", "v", "F", "sigma"])
+@pytest.mark.parametrize(("factor", "code"), [(1.0, 0), (1.02, 1), (0.98, 1), (1.0001, 0)])
+def test_every_recorded_error_decides(quantity: str, factor: float, code: int) -> None:
+    """Recorded errors of CPDI as the errors of a study: one of them 2 % off is a FAIL, of v, F and sigma too."""
+    plan = built(ppc=4, cells=(8, 12, 16, 24, 32))
+    known = {q: {round(1 / one.h): one.low for one in recorded("axis_aligned", "cpdi", 4, q)} for q in QUANTITIES}
+    results, (usual,) = {}, made(LEVELS[:1]).values()
+    for run in plan.runs:
+        at = {q: known[q][run.cells] * (factor if q == quantity and run.cells == 16 else 1.0) for q in QUANTITIES}
+        errors = {q: dict.fromkeys(usual.errors[q], at[q]) for q in QUANTITIES}
+        results[run.digest] = replace(usual, run=run, digest=run.digest, errors=errors)
+    found = findings(plan, results)
+    assert exit_code(found) == code
+    wrong = [(f.plan.quantity, f.verdict.reason.code) for f in found if f.counts and f.verdict.outcome is FAIL]
+    assert wrong == ([(quantity, ReasonCode.MAGNITUDE)] if code else [])
+
+
+def test_recorded_errors_of_another_solver_count_on_its_finest_cells() -> None:
+    ours, theirs = ({q: expected("mpm", "clamped_shear:G=1e-06", "neo_hookean", 4, q, "rms", theirs=their)
+                     for q in QUANTITIES} for their in (False, True))  # fmt: skip
+    for q in QUANTITIES:
+        one, other = ours[q], theirs[q]
+        assert one is not None
+        assert other is not None
+        assert (one.within, one.finest, other.within, other.finest) == (0.01, False, 0.1, True)
+        assert all(known.low == known.high for known in one.recorded)
+        assert any(known.low < known.high for known in other.recorded)  # of one order of the step or the other
+    assert expected("mpm", "clamped_shear:G=1e-06", "neo_hookean", 4, "u", "rms", usual=False).recorded == ()
+
+
+def test_an_order_that_is_given_is_of_u_and_the_others_have_to_converge() -> None:
+    asked = {"cells": (8, 16, 32, 64), "ppc": (4,), "solver": ("./mine {case} {out}",), "solver_version": ("1",)}
+    plans = build(Asked("mms", {**asked, "order": (2.0,)}), "verify mms", "mms").plans
+    assert [(p.quantity, p.expectation.order) for p in plans if p.judged] == [("u", 2.0)]
+    assert [(p.quantity, p.expectation.order) for p in plans if p.refutes] == [("v", 1.0), ("F", 1.0), ("sigma", 1.0)]
+
+
 @pytest.mark.parametrize("changes", [{"solution": "axis_aligned:A=0.01"}, {"material": "neo_hookean:nu=0.2"}])
 def test_an_order_is_expected_whatever_the_parameters(changes: dict[str, str]) -> None:
     judged = [d.expectation for d in built(**changes).plans if d.judged]
-    assert [(e.order, e.constant) for e in judged if e] == [(2.0, None)] * 2  # the recorded error holds for defaults
+    assert [(e.order, e.recorded) for e in judged if e] == [(2.0, ())] * 2  # recorded errors hold for defaults
     assert not any(d.judged for d in built(method=("mpm",), **changes).plans)  # small amplitudes do converge
 
 

@@ -221,7 +221,7 @@ class StoredStudy:
             return
         from mpm_verify.verify.terminal import checks, table
 
-        said = [table.sentence(self.record, f).plain.strip() for f in self.record.findings if f.plan.judged]
+        said = [table.sentence(self.record, f).plain.strip() for f in self.record.findings if f.counts]
         said += [checks.sentence(one) for one in self.record.analysis.checks if one.outcome != "PASS"]
         raise AssertionError("\n".join([f"{self.record.study.title}: {self.outcome}", *said]))
 
@@ -230,7 +230,7 @@ class StoredStudy:
         """Rows of the judged quantities, as in the JSON document."""
         from mpm_verify.reports.export.document import verdict
 
-        return [verdict(self.record, found) for found in self.record.findings if found.plan.judged]
+        return [verdict(self.record, found) for found in self.record.findings if found.counts]
 
     @property
     def checks(self) -> list[dict[str, Any]]:

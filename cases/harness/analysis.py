@@ -25,7 +25,7 @@ class Analysis:
     @property
     def outcomes(self) -> list[Outcome]:
         """Outcomes of all that decides."""
-        return [f.verdict.outcome for f in self.findings if f.plan.judged] + [check.outcome for check in self.checks]
+        return [f.verdict.outcome for f in self.findings if f.counts] + [check.outcome for check in self.checks]
 
     @property
     def outcome(self) -> Outcome:

@@ -3,7 +3,7 @@
 import json
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import asdict, dataclass, fields
 from itertools import product
 from math import prod
 from typing import Any, cast, get_type_hints
@@ -197,7 +197,8 @@ def quantity_plans(case: Case, run: RunRecord) -> list[QuantityPlan[Any]]:
         for norm in case.norms:
             expectation = _registered(case, case.expectation(run, quantity, norm))
             judged = expectation is not None and (quantity, norm) in case.judged
-            found.append(QuantityPlan(run, quantity, norm, judged, expectation, multiple))
+            refutes = expectation is not None and expectation.order is not None and (quantity, norm) in case.refutes
+            found.append(QuantityPlan(run, quantity, norm, judged, expectation, multiple, refutes))
     return found
 
 
@@ -206,7 +207,7 @@ def _registered(case: Case, expectation: Expectation | None) -> Expectation | No
     if expectation is None:
         return None
     try:
-        TypeAdapter(Expectation).validate_json(json.dumps(vars(expectation), default=repr), strict=True)
+        TypeAdapter(Expectation).validate_json(json.dumps(asdict(expectation), default=repr), strict=True)
     except ValidationError as error:
         raise ValueError(f"{case.name}: expectation returns an Expectation with {invalid(error)}") from None
     return expectation

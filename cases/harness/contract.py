@@ -100,6 +100,11 @@ class Case:
         return getattr(self.module, "JUDGED", ())
 
     @property
+    def refutes(self) -> tuple[tuple[str, str], ...]:
+        """Quantities and norms whose FAIL counts where an order is expected of them, and nothing else of theirs."""
+        return getattr(self.module, "REFUTES", ())
+
+    @property
     def expectation(self) -> Callable[[RunRecord, str, str], Expectation | None]:
         """Function (run, quantity, norm) -> registered expectation of the refinement of the run, or None."""
         return getattr(self.module, "expectation", lambda run, quantity, norm: None)
@@ -213,20 +218,25 @@ def _check_axes(name: str, module: ModuleType, known: Sequence[str]) -> None:
 
 
 def _check_judged(name: str, module: ModuleType) -> None:
-    """Check that QUANTITIES and NORMS of a user's case are words, and that JUDGED has pairs of them."""
+    """Check that QUANTITIES and NORMS of a user's case are words, and that JUDGED and REFUTES have pairs of them."""
     words = {word: getattr(module, word, ()) for word in ("QUANTITIES", "NORMS")}
     for word, held in words.items():
         if not isinstance(held, tuple | list) or not all(isinstance(item, str) for item in held):
             raise OwnFileError(f"{name}: {word} = {shortened(held)} must be words with a comma, such as ('u',)")
-    judged = getattr(module, "JUDGED", ())
-    for pair in judged if isinstance(judged, tuple | list) else [judged]:
+    for told_, pair in ((t, pair) for t in ("JUDGED", "REFUTES") for pair in _pairs(getattr(module, t, ()))):
         if not isinstance(pair, tuple) or len(pair) != 2:
-            raise OwnFileError(f"{name}: JUDGED = {shortened(judged)} must be pairs, such as (('u', 'rms'),)")
+            raise OwnFileError(f"{name}: {told_} = {shortened(getattr(module, told_))} must be pairs, such as "
+                               "(('u', 'rms'),)")  # fmt: skip
         for item, (word, held) in zip(pair, words.items(), strict=True):
             if item not in held:
-                raise OwnFileError(f"{name}: JUDGED has {pair!r}, and {word} has {', '.join(held) or 'nothing'}")
+                raise OwnFileError(f"{name}: {told_} has {pair!r}, and {word} has {', '.join(held) or 'nothing'}")
     if words["QUANTITIES"] and not words["NORMS"]:
         raise OwnFileError(f"{name}: a case with QUANTITIES has NORMS too, such as ('rms',)")
+
+
+def _pairs(found: Any) -> Sequence[Any]:
+    """Pairs of a list; what is none is looked at as one."""
+    return found if isinstance(found, tuple | list) else [found]
 
 
 def _listed(found: Any, kind: type = object) -> bool:

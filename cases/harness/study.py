@@ -192,6 +192,8 @@ class QuantityPlan(Generic[R]):
         Keys of `ResultRecord.errors`.
     judged
         Whether the verdict counts; a quantity that is only shown decides nothing.
+    refutes
+        Whether a FAIL of it counts, while its other outcomes are only shown.
     expectation
         What is registered; None where nothing is.
     multiple
@@ -204,6 +206,7 @@ class QuantityPlan(Generic[R]):
     judged: bool
     expectation: Expectation | None
     multiple: int = 1
+    refutes: bool = False
 
     @property
     def head(self) -> Head:

@@ -8,7 +8,7 @@ from mpm_verify.cases.harness.axes import cell_crossings, error, level, middle, 
 from mpm_verify.cases.harness.refinement import Series, collect
 from mpm_verify.cases.harness.study import Head, QuantityPlan, ResultRecord, Study, without
 from mpm_verify.cases.judging.fit import local
-from mpm_verify.cases.judging.order import Expectation, Level, Quantity, Verdict, judge, judge_family
+from mpm_verify.cases.judging.order import Expectation, Level, Outcome, Quantity, Verdict, judge, judge_family
 from mpm_verify.cases.judging.records import Ended
 from mpm_verify.cases.judging.stall import BELOW, USUAL, Measured, Peer, Stall, explain
 
@@ -33,6 +33,11 @@ class Finding:
     finest: Result | None
     results: tuple[Result | None, ...] = ()
     stall: Stall | None = None
+
+    @property
+    def counts(self) -> bool:
+        """Whether the verdict decides: that of a judged quantity, or a FAIL of one that can refute."""
+        return self.plan.judged or (self.plan.refutes and self.verdict.outcome is Outcome.FAIL)
 
     @property
     def crossings(self) -> tuple[float | None, ...]:

@@ -1,20 +1,20 @@
 """Order rule, registered before the run: whether the observed order of errors is as expected.
 
 A least-squares slope within half an order of the formal one passes codes with a first-order leak, with a floor, and
-with rates that drift, so no single slope decides here. In turn: gates (is there anything to judge), asymptotic window,
-equivalence of the slope with a band, contamination, magnitude. FAIL needs evidence against the expectation; lack of
-evidence is INCONCLUSIVE and names the run that would decide. An expected order of None registers non-convergence,
-which growth or failed runs show. Reasons are codes with numbers, see records.py. The statistics stand in fit.py, the
-norms in norms.py.
+with rates that drift, so no single slope decides here. In turn: evidence against the expectation (evidence.py), gates
+(is there anything to judge), asymptotic window, equivalence of the slope with a band, contamination, magnitude. FAIL
+needs evidence; lack of it is INCONCLUSIVE and names the run that would decide. An expected order of None registers
+non-convergence, which growth or failed runs show. Reasons are codes with numbers, see records.py. The statistics stand
+in fit.py, the norms in norms.py.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
+from mpm_verify.cases.judging.evidence import CLEAR, carried, evidence, tail
 from mpm_verify.cases.judging.fit import Fit, contamination
+from mpm_verify.cases.judging.quantity import LEVELS, Quantity
 from mpm_verify.cases.judging.records import (
     Action,
     Contamination,
@@ -25,98 +25,22 @@ from mpm_verify.cases.judging.records import (
     Reason,
     ReasonCode,
     Verdict,
-    Wanted,
 )
 from mpm_verify.solver.failure import FailureKind
 
 __all__ = ["Expectation", "Level", "Outcome", "Quantity", "Verdict", "judge", "judge_family"]
 
-LEVELS = 4  # fewer cannot show that the order has settled
-CLEAR = 100.0  # times the round-off floor
 COUPLED = 0.10  # relative change of the finest error when dt is halved
 NO_PASS, DEFECT = 0.10, 0.50  # fractions of the finest error that are not of the expected order
 ONE_SIGMA = 0.84  # NO_PASS must hold with a standard error to spare: the best fit alone passes 8 % of 14 % floors
-MAGNITUDE = 0.10  # relative distance from the recorded error
+MAGNITUDE = 0.10  # relative distance from a recorded error that was carried over to other cells
 GROWTH = 2.0  # a flat sequence with 15 % scatter grows by 1.5 from its best level in 9 % of draws, by 2 in 0.2 %
 DROP = 0.3  # in the local order, of a stall: a fall that no scatter of a converging family shows
-LEAST_CELLS = 2  # of a study
 CONVERGES = 0.5  # a smaller order is nearly a stall: no surprise where non-convergence is expected
 
 
 PASS, FAIL, INCONCLUSIVE = Outcome.PASS, Outcome.FAIL, Outcome.INCONCLUSIVE
 Finding = tuple[Outcome, Reason]
-
-
-@dataclass(frozen=True)
-class Quantity:
-    """Quantity to be judged.
-
-    Parameters
-    ----------
-    levels, expectation, floor, dt_halved, multiple
-        See `judge`.
-
-    Raises
-    ------
-    ValueError
-        If two levels have the same cell size.
-    """
-
-    levels: Sequence[Level]
-    expectation: Expectation
-    floor: float
-    dt_halved: float | None
-    multiple: int = 1
-
-    def __post_init__(self) -> None:
-        if len({level.h for level in self.levels}) < len(self.levels):
-            raise ValueError("two levels have the same cell size; give replicates as errors of one level")
-
-    @cached_property
-    def ordered(self) -> list[Level]:
-        """All levels, coarse to fine."""
-        return sorted(self.levels, key=lambda level: -level.h)
-
-    @cached_property
-    def fit(self) -> Fit:
-        """Fit of the levels that finished."""
-        done = [level for level in self.ordered if not level.ended]
-        return Fit(np.array([level.h for level in done]), [np.array(level.errors) for level in done])
-
-    @property
-    def finer(self) -> Wanted:
-        """Run to ask for when one more level would decide: the refinement goes on as it did last."""
-        h = [level.h for level in self.ordered]
-        return self.wanted(Action.ADD_LEVEL, h[-1] ** 2 / h[-2] if len(h) > 1 else h[-1] / 2)
-
-    @property
-    def enough(self) -> Wanted:
-        """Runs to ask for where there are fewer than LEVELS: as many as it takes, the refinement going on as it did."""
-        quantity, wanted = self, self.finer
-        while len(quantity.levels) + 1 < LEVELS:
-            quantity = replace(quantity, levels=[*quantity.levels, Level(wanted.h, ())])
-            wanted = quantity.finer
-        return wanted
-
-    def wanted(self, action: Action, h: float) -> Wanted:
-        """Run that would decide, and all the cells of the study then, whole multiples of `multiple`."""
-        counts = [round(1 / level.h) for level in self.ordered]
-        if any(abs(n * level.h - 1) > 1e-6 for n, level in zip(counts, self.ordered, strict=True)):
-            return Wanted(action, h)
-        cells = max(1, round(1 / h / self.multiple)) * self.multiple
-        if action is Action.ADD_LEVEL:
-            finer = (counts[-1] // self.multiple + 1) * self.multiple
-            cells = cells if h >= self.ordered[-1].h else max(cells, finer)
-            counts.append(cells)
-        if action is Action.REPLACE_FINEST:
-            counts = [n for n in (cells, *counts[:-1]) if n >= LEAST_CELLS]
-        return Wanted(action, 1 / cells if action is Action.ADD_LEVEL else h, tuple(sorted(set(counts))))
-
-    @property
-    def band(self) -> tuple[float, float]:
-        """Band that the order must lie in; without bounds if none is expected."""
-        e = self.expectation
-        return (-np.inf, np.inf) if e.order is None else (e.order - e.below, e.order + e.above)
 
 
 def judge(
@@ -197,6 +121,8 @@ def _judge(q: Quantity, confidence: float) -> Verdict:
     kind, ended = q.expectation.failed, tuple(end for level in q.ordered if (end := level.ended))
     if kind and q.ordered and all(level.failed_by(kind) for level in q.ordered):
         outcome, reason = PASS, Reason(ReasonCode.ALL_FAILED, failed=ended)
+    elif against := evidence(q):
+        outcome, reason = FAIL, against
     elif not len(fit.h):
         outcome, reason = Outcome.ERROR, Reason(ReasonCode.NOTHING_FINISHED, failed=ended)
     elif order is None:
@@ -204,6 +130,8 @@ def _judge(q: Quantity, confidence: float) -> Verdict:
     else:
         gate = _gate(q)
         outcome, reason = (INCONCLUSIVE, gate) if gate else _convergence(q, mixed, confidence)
+        if outcome is INCONCLUSIVE and (low := tail(q)):
+            outcome, reason = FAIL, low
     observed, interval = (slope.value, slope.interval(confidence)) if slope else (None, None)
     return Verdict(outcome, order, observed, interval, reason, tuple(fit.orders.tolist()), fit.window, mixed)
 
@@ -221,8 +149,8 @@ def _gate(q: Quantity) -> Reason | None:
     finest = float(fit.h[-1])
     if q.dt_halved is None or not np.isfinite(q.dt_halved):
         return Reason(ReasonCode.TIME_STEP_UNKNOWN, wanted=q.wanted(Action.HALVE_FINEST, finest))
-    change = abs(q.dt_halved / float(fit.replicates[-1][0]) - 1)
-    if change >= COUPLED:
+    change = q.dt_halved / float(fit.replicates[-1][0]) - 1
+    if abs(change) >= COUPLED:
         return Reason(ReasonCode.TIME_STEP_COUPLED, {"change": change}, wanted=q.wanted(Action.HALVE_ALL, finest))
     rises = fit.h[1:][np.diff(fit.error) >= 0]
     return Reason(ReasonCode.ERROR_RISES, {"h": float(rises[0])}, wanted=q.finer) if len(rises) else None
@@ -269,20 +197,18 @@ def _purity(q: Quantity, mixed: Contamination) -> Finding:
 
 
 def _magnitude(q: Quantity) -> Finding:
-    """Recorded error at its own cell size; if that was not run, carried to the finest, which proves no FAIL."""
+    """Recorded error: met where it was run, else carried to the finest cells, which proves nothing."""
     e, fit = q.expectation, q.fit
-    if e.constant is None or e.constant_h is None or e.order is None:
+    if not e.recorded:
         return PASS, Reason(ReasonCode.AS_EXPECTED)
-    same = np.flatnonzero(np.isclose(fit.h, e.constant_h))
-    at = int(same[0]) if len(same) else -1
-    ratio = float(fit.error[at] / e.constant * (1 if len(same) else (e.constant_h / fit.h[at]) ** e.order))
-    numbers: Numbers = {"h": float(fit.h[at]), "ratio": ratio}
+    if q.known:
+        level, known = q.known[-1]
+        return PASS, Reason(ReasonCode.AS_EXPECTED, {"h": level.h, "ratio": known.ratio(level.errors[0])})
+    near, ratio = carried(q)
+    numbers: Numbers = {"h": float(fit.h[-1]), "ratio": ratio}
     if abs(ratio - 1) <= MAGNITUDE:
         return PASS, Reason(ReasonCode.AS_EXPECTED, numbers)
-    if len(same):
-        return FAIL, Reason(ReasonCode.MAGNITUDE, numbers)
-    wanted = q.wanted(Action.ADD_LEVEL, e.constant_h)
-    return INCONCLUSIVE, Reason(ReasonCode.MAGNITUDE_CARRIED, numbers, wanted=wanted)
+    return INCONCLUSIVE, Reason(ReasonCode.MAGNITUDE_CARRIED, numbers, wanted=q.wanted(Action.ADD_LEVEL, near.h))
 
 
 def _non_convergence(q: Quantity, confidence: float) -> Finding:

@@ -27,6 +27,19 @@ def worst(outcomes: Iterable[Outcome]) -> Outcome:
 
 
 @dataclass(frozen=True)
+class Recorded:
+    """Error once recorded at a cell size h, or its range over variants of a method, low to high."""
+
+    h: float
+    low: float
+    high: float
+
+    def ratio(self, error: float) -> float:
+        """Error over the recorded one; over the nearest end of a range, and 1 inside it."""
+        return error / min(max(error, self.low), self.high)
+
+
+@dataclass(frozen=True)
 class Expectation:
     """Expectation, registered before the run.
 
@@ -38,8 +51,10 @@ class Expectation:
         Band [order - below, order + above] that the whole interval must lie in.
     source
         Where the expectation comes from.
-    constant, constant_h
-        Error once recorded, and the cell size that it was recorded at.
+    recorded
+        Errors that are known.
+    within, finest
+        Largest relative distance from them; and whether of the finest level that has one alone, or of all.
     stall, stall_h
         Local order that the order falls below, on cells of `stall_h` or finer.
     failed
@@ -48,22 +63,21 @@ class Expectation:
     Raises
     ------
     ValueError
-        If only one of constant and constant_h is given, if the band has no width, or for a stall beside an order.
+        If the band has no width, or for a stall beside an order.
     """
 
     order: float | None
     below: float = 0.2
     above: float = 0.3
     source: str = ""
-    constant: float | None = None
-    constant_h: float | None = None
+    recorded: tuple[Recorded, ...] = ()
+    within: float = 0.1
+    finest: bool = False
     stall: float | None = None
     stall_h: float | None = None
     failed: FailureKind | None = None
 
     def __post_init__(self) -> None:
-        if (self.constant is None) != (self.constant_h is None):
-            raise ValueError("constant and constant_h belong together; give both or neither")
         if self.below <= 0 or self.above <= 0:
             raise ValueError(f"below = {self.below} and above = {self.above} must both be above zero")
         if self.stall is not None and self.order is not None:
@@ -140,14 +154,17 @@ class ReasonCode(StrEnum):
     STALLS = "stalls"  # PASS [order_best, order_last, h_last; those of growth]
     ORDER_BELOW = "order_below"  # FAIL [order, start, end, confidence, last, band_low, band_high]
     CONTAMINATED = "contaminated"  # FAIL [lower, floor, most]
-    MAGNITUDE = "magnitude"  # FAIL [h, ratio]
+    MAGNITUDE = "magnitude"  # FAIL [h, ratio, within]
+    FAR_OFF = "far_off"  # FAIL: more than FAR times the recorded error, carried over [h, ratio, recorded_h]
+    RUN_ENDED = "run_ended"  # FAIL: particles were inverted or left the grid, where an order is expected
+    FALLS_SHORT = "falls_short"  # FAIL: both finest local orders are well below the band [first, last, band_low; flat, of a floor]
     CONVERGES = "converges"  # FAIL: not expected [h_0, error_0, h_1, error_1, order]
     NOTHING_FINISHED = "nothing_finished"  # ERROR
     TOO_FEW_LEVELS = "too_few_levels"  # INCONCLUSIVE from here on [levels needed]
     LEVEL_MISSING = "level_missing"
     NEAR_ROUND_OFF = "near_round_off"  # [error, floor]
     TIME_STEP_UNKNOWN = "time_step_unknown"
-    TIME_STEP_COUPLED = "time_step_coupled"  # [change]
+    TIME_STEP_COUPLED = "time_step_coupled"  # [ratio: error with half the time step over the other]
     ERROR_RISES = "error_rises"  # [h]
     NOT_SETTLED = "not_settled"  # [local orders]
     ORDER_ABOVE = "order_above"

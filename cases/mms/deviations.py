@@ -115,23 +115,3 @@ DEVIATIONS: dict[str, dict[str, Deviation]] = {
 # their stall lies beyond, and nothing is registered of it.
 LATER_WITH_9 = {("cpgimp", "swirl"), ("gimp", "generalised_vortex")}
 OWN_MATERIAL = ("expanding_ring",)  # with another its edges are not free of traction, and no order is expected
-# Recorded errors of u in rms: (method, solution, ppc) -> (h, error), table in docs/results.md
-RECORDED = {
-    ("cpdi", "axis_aligned", 4): (1 / 128, 1.127e-5),
-    ("cpdi", "axis_aligned", 9): (1 / 128, 1.066e-5),
-    ("cpdi2", "axis_aligned", 4): (1 / 64, 4.498e-5),
-    ("cpgimp", "axis_aligned", 4): (1 / 64, 4.742e-5),
-    ("cpdi", "bar", 4): (1 / 64, 8.058e-5),
-    ("cpdi2", "bar", 4): (1 / 64, 8.058e-5),
-    ("cpgimp", "bar", 4): (1 / 64, 7.504e-5),
-    ("cpdi", "clamped_shear", 4): (1 / 64, 8.414e-5),
-    ("cpdi2", "clamped_shear", 4): (1 / 64, 8.344e-5),
-    ("cpgimp", "clamped_shear", 4): (1 / 64, 7.467e-5),
-    ("cpdi", "swirl", 4): (1 / 64, 1.604e-4),
-    ("cpdi2", "swirl", 4): (1 / 64, 1.521e-4),
-    ("cpdi", "expanding_ring", 4): (1 / 64, 8.088e-5),
-    ("cpdi2", "expanding_ring", 4): (1 / 64, 8.610e-5),
-    ("cpdi", "generalised_vortex", 4): (1 / 64, 1.045e-2),
-    ("cpdi2", "generalised_vortex", 4): (1 / 64, 9.109e-3),
-    ("bspline3", "generalised_vortex", 4): (1 / 64, 1.612e-2),
-}

@@ -16,7 +16,7 @@ from collections.abc import Sequence
 from math import pi
 from typing import Any
 
-from mpm_verify.cases.judging.records import Expectation
+from mpm_verify.cases.judging.records import Expectation, Recorded
 from mpm_verify.cases.wave_bar.run import AXES, QUICK, Result, Run
 from mpm_verify.solver.plugins import MATERIALS, METHODS, TRANSFERS, create, is_file, label, split
 from mpm_verify.solver.plugins import canonical as canonical_name
@@ -48,7 +48,6 @@ def expectation(run: Run, quantity: str, norm: str) -> Expectation | None:
         return None
     basis = create(METHODS, run.method)
     hats = run.ppc == 4 and split(run.method)[0] in HATS
-    h = FINE if hats else None
     error = (pi * FINE) ** 2 * ((1 - run.courant**2) / 24 + 3 / 32) if hats else None
     return Expectation(basis.order, source="closed form of the dispersion" if hats else "declared by the method",
-                       constant=error, constant_h=h)  # fmt: skip
+                       recorded=(Recorded(FINE, error, error),) if error else ())  # fmt: skip

@@ -45,12 +45,12 @@ class Card:
 
 def cards(record: Record) -> list[Card]:
     """Cards of the judged quantities in the order of the plans."""
-    return [_card(record, found) for found in record.findings if found.plan.judged]
+    return [_card(record, found) for found in record.findings if found.counts]
 
 
 def summary(record: Record) -> str:
     """Summary such as `4 of 5 judged quantities PASS, 1 INCONCLUSIVE`."""
-    counts = Counter(str(f.verdict.outcome) for f in record.findings if f.plan.judged)
+    counts = Counter(str(f.verdict.outcome) for f in record.findings if f.counts)
     total = counts.total()
     if not total:
         return "This study judges nothing: it only shows."

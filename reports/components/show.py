@@ -64,14 +64,14 @@ def shown_orders(record: Record) -> Table:
 
 def contamination(record: Record) -> Table:
     """Fractions of the finest error, judged quantities first."""
-    found = sorted((f for f in record.findings if f.verdict.contamination), key=lambda f: not f.plan.judged)
+    found = sorted((f for f in record.findings if f.verdict.contamination), key=lambda f: not f.counts)
     rows = []
     for f in found:
         mixed, plan = f.verdict.contamination, f.plan
         if mixed is not None:
             name = f"{words.quantity(plan.quantity)}, {plan.norm}"
             fractions = (words.percent(part) for part in (mixed.lower, mixed.floor, mixed.most))
-            rows.append((record.label(plan.run), name, "judged" if plan.judged else "shown only", *fractions))
+            rows.append((record.label(plan.run), name, "judged" if f.counts else "shown only", *fractions))
     head = ("series", "quantity", "role", "lower order", "floor", "at most")
     return Table("Fractions of the finest error that are not of the expected order", head, tuple(rows), heads=3)
 
@@ -79,7 +79,7 @@ def contamination(record: Record) -> Table:
 def shown_verdicts(record: Record) -> Table:
     """Slopes of what is only shown; where something was expected, what the rule would say of it."""
     head = ("series", "quantity", "observed order", "interval", "expected", "the rule would say")
-    found = [f for f in record.findings if not f.plan.judged]
+    found = [f for f in record.findings if not f.counts]
     known = [f for f in found if f.plan.expectation or f.verdict.observed is not None]
     rows = tuple(_shown(record, f) for f in known)
     return Table("Shown only: fitted orders", head, rows, heads=2, texts=head[4:])

@@ -31,7 +31,7 @@ def write_junit(path: Path, record: Record) -> None:
     """Write the file; OSError where it cannot be written. Times are those of the runs, as stored."""
     study, found = record.study, record.analysis
     suite = ElementTree.Element("testsuite", name=study.name, tests=str(len(found.outcomes)))
-    for finding in (f for f in found.findings if f.plan.judged):
+    for finding in (f for f in found.findings if f.counts):
         _verdict(suite, record, finding)
     for check in found.checks:
         _check(suite, study.name, check)

@@ -11,7 +11,7 @@ def markdown(record: Record) -> str:
     """Heading with the outcome, a row for each judged quantity and for each check that did not pass."""
     study, found = record.study, record.analysis
     lines = [f"### {MARKS[found.outcome]} {found.outcome}: {escaped(study.title)}", "", f"`{study.command}`", ""]
-    judged = [f for f in found.findings if f.plan.judged]
+    judged = [f for f in found.findings if f.counts]
     if judged:
         lines += ["| | refinement | quantity | order | expected | reason |", "| --- | --- | --- | --- | --- | --- |"]
         for f in judged:

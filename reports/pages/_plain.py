@@ -62,7 +62,7 @@ def verdict_table(record: Record) -> Table:
     rows = []
     for f in record.findings:
         plan, v = f.plan, f.verdict
-        said = str(v.outcome) if plan.judged else "shown"
+        said = str(v.outcome) if f.counts else "shown"
         rows.append((record.label(plan.run), words.measured(plan, ", "), said, words.order(v.observed),
                      words.interval(v.interval), verdicts.registered(plan.expectation),
                      commands.reason(record.study, f)))  # fmt: skip

@@ -1,10 +1,13 @@
 """Verdicts in words: what was expected, what decided, and the run that would decide."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
-from mpm_verify.cases.judging.records import Action, Ended, Expectation, Reason, ReasonCode, Wanted
+from mpm_verify.cases.harness.verdicts import Finding
+from mpm_verify.cases.judging.records import Action, Ended, Expectation, Outcome, Reason, ReasonCode, Wanted
 from mpm_verify.reports import words
 from mpm_verify.reports.sentences import failures
+
+ALIKE = 0.06  # distance from the ratio of errors that a cause has
 
 
 def registered(e: Expectation | None) -> str:
@@ -21,6 +24,18 @@ def expected(e: Expectation) -> str:
     if e.order is not None:
         return f"order {e.order:g}"
     return "a stall" if e.stall is not None else "no convergence"
+
+
+def beside(found: Sequence[Finding]) -> str:
+    """Sentence on what can refute, such as `v and F in rms can refute, and do not: 2 of 2 as registered.`."""
+    can = [f for f in found if f.plan.refutes]
+    if not can or any(f.counts for f in can):
+        return ""
+    names = list(dict.fromkeys(f.plan.quantity for f in can))
+    listed = " and ".join([*([", ".join(names[:-1])] if names[1:] else []), names[-1]])
+    passed = sum(f.verdict.outcome is Outcome.PASS for f in can)
+    rest = ", the others undecided" if passed < len(can) else ""
+    return f"{listed} in rms can refute, and do not: {passed} of {len(can)} as registered{rest}."
 
 
 def reason(r: Reason, courants: tuple[float, ...] = ()) -> str:
@@ -135,6 +150,42 @@ def _parts(r: Reason) -> str:
     return f"lower order {lower}, floor {floor} of the finest error, at most {most}"
 
 
+def _run_ended(r: Reason) -> str:
+    more = f", and {len(r.failed) - 1} more" if r.failed[1:] else ""
+    return f"the run at h={words.size(r.failed[0].h)} ended with {ended(r.failed[0])}{more}"
+
+
+def _falls_short(r: Reason) -> str:
+    first, last, low = (words.order(_number(r, name)) for name in ("first", "last", "band_low"))
+    flat = f"; it stops falling at {words.short(_number(r, 'flat'))}, a floor" if "flat" in r.numbers else ""
+    return (
+        f"the error does not fall as it should: the last two local orders are {first} and {last}, against {low}{flat}"
+    )
+
+
+def _far_off(r: Reason) -> str:
+    return f"{_magnitude(r)}, carried over from h={_h(r, 'recorded_h')}"
+
+
+def _coupled(r: Reason) -> str:
+    change = _number(r, "change")
+    word, size = ("raises", change) if change > 0 else ("lowers", -change)
+    return f"coupled: half the time step {word} the finest error by {words.percent(size, 0)}{_points_to(1 + change)}"
+
+
+def _points_to(ratio: float) -> str:
+    """Hint on a change of the error with the time step, by its ratio; empty where it points to nothing."""
+    known = {
+        0.25: ": an error of second order in the time step",
+        0.5: ": an error of first order in the time step, such as a start, a load or a stress at another time level",
+        0.71: ": a factor such as a norm over all steps that is divided by their number",
+    }
+    near = min(known, key=lambda one: abs(one - ratio))
+    if ratio > 1:
+        return ": something is lost in each step"
+    return known[near] if abs(near - ratio) < ALIKE else ""
+
+
 def _magnitude(r: Reason) -> str:
     return f"the error at h={_h(r, 'h')} is {words.order(_number(r, 'ratio'))} times the recorded one"
 
@@ -174,6 +225,9 @@ SAID: dict[ReasonCode, Callable[[Reason], str]] = {
     ReasonCode.ORDER_BELOW: lambda r: f"{_order(r)}: below the band",
     ReasonCode.CONTAMINATED: lambda r: f"the expected order is the smaller part: {_parts(r)}",
     ReasonCode.MAGNITUDE: _magnitude,
+    ReasonCode.FAR_OFF: _far_off,
+    ReasonCode.RUN_ENDED: _run_ended,
+    ReasonCode.FALLS_SHORT: _falls_short,
     ReasonCode.CONVERGES: lambda r: (
         f"a surprise: not expected to converge, the error fell {_path(r)}, order {words.order(_number(r, 'order'))}"
     ),
@@ -184,9 +238,7 @@ SAID: dict[ReasonCode, Callable[[Reason], str]] = {
     ReasonCode.LEVEL_MISSING: _level_missing,
     ReasonCode.NEAR_ROUND_OFF: _near_round_off,
     ReasonCode.TIME_STEP_UNKNOWN: lambda r: "nothing shows that the time step is small enough",
-    ReasonCode.TIME_STEP_COUPLED: lambda r: (
-        f"coupled: half the time step changes the finest error by {_percent(r, 'change')}"
-    ),
+    ReasonCode.TIME_STEP_COUPLED: _coupled,
     ReasonCode.ERROR_RISES: lambda r: f"the error does not fall on the way to h={_h(r, 'h')}",
     ReasonCode.NOT_SETTLED: _not_settled,
     ReasonCode.ORDER_ABOVE: lambda r: f"{_order(r)}: above the band, so the expectation is wrong or errors cancel",

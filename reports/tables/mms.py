@@ -105,7 +105,7 @@ def contamination(record: Record) -> Rows:
         mixed = found.verdict.contamination
         if mixed is not None:
             row = named(record, found.plan)
-            row |= {"role": "judged" if found.plan.judged else "shown"}
+            row |= {"role": "judged" if found.counts else "shown"}
             rows.append(row | {"lower_order": mixed.lower, "floor": mixed.floor, "at_most": mixed.most})
     return rows
 

@@ -72,7 +72,7 @@ def verdicts(record: Record) -> Rows:
     return [
         joined(
             record.columns(f.plan.run),
-            {"quantity": f.plan.quantity, "norm": f.plan.norm, "role": "judged" if f.plan.judged else "shown"},
+            {"quantity": f.plan.quantity, "norm": f.plan.norm, "role": "judged" if f.counts else "shown"},
             {"verdict": str(f.verdict.outcome), "order": f.verdict.observed, "code": str(f.verdict.reason.code),
              "reason": commands.reason(record.study, f)},
         )

@@ -17,7 +17,7 @@ def show(record: Record, page: Path | None) -> None:
         out.width = max(out.width, 100)
     table.show(record, None, out)
     for finding in record.findings:
-        if not finding.plan.judged:
+        if not finding.counts:
             out.print(Text(any_code.observed(table.named(record, finding.plan), finding.verdict)))
     seen: set[tuple[str, str]] = set()
     for found in record.analysis.more.extrapolated:

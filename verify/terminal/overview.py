@@ -25,7 +25,7 @@ def show_overview(record: Record, page: Path | None) -> None:
     out.print(f"{found.caption}\n")
     out.print(table)
     for finding in record.findings:
-        if finding.plan.judged and finding.verdict.outcome != "PASS":
+        if finding.counts and finding.verdict.outcome != "PASS":
             verdict(out, record, finding)
     out.print(f"\n{summary(record)}")
     where(out, page, "\nVerdicts, error against cost, where orders fall and why, and how it was made:")

@@ -38,15 +38,17 @@ def show(record: Record, page: Path | None, console: Console | None = None) -> N
     if not out.is_terminal:
         out.width = max(out.width, 100)
     out.print(f"\n[bold]{study.title}[/bold]")
-    shown = [f for f in found if f.plan.judged or f.plan.run.given or (f.plan.quantity, f.plan.norm) == ALWAYS]
+    shown = [f for f in found if f.counts or f.plan.run.given or (f.plan.quantity, f.plan.norm) == ALWAYS]
     out.print(errors_table(record, shown))
     if (most := max((len(level.errors) for f in found for level in f.levels), default=1) - 1) > 0:
         given = any(f.plan.run.given for f in found)
         how = "" if given else ", each with other positions of the particles"
         out.print(f"errors are geometric means of up to {most + 1} runs{how}")
     for finding in found:
-        if finding.plan.judged:
+        if finding.counts:
             verdict(out, record, finding)
+    if beside := verdicts.beside(found):
+        out.print(f"\n{beside}", style="dim")
     for finding in found:
         if finding.stall:
             out.print(stall(record, finding, finding.stall))
@@ -55,7 +57,7 @@ def show(record: Record, page: Path | None, console: Console | None = None) -> N
         out.print(f"HINT  {line}", markup=False)
     if levels := commands.levels(study, found, record.store.folder):
         out.print(f"  this would tell which time levels it needs: {levels}", soft_wrap=True, markup=False)
-    if not any(f.plan.judged for f in found):
+    if not any(f.counts for f in found):
         theirs = any(getattr(run, "solver", "") for run in study.runs) and "start" not in study.axes
         hint = "; say what is expected: --order 2, or --as METHOD" if theirs else ""
         out.print(f"INCONCLUSIVE: nothing here has a registered expectation, so nothing is judged{hint}.")

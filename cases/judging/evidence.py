@@ -1,0 +1,67 @@
+"""Evidence against an expectation: what is wrong whatever gates are shut, see order.py."""
+
+from math import log
+
+from mpm_verify.cases.judging.quantity import LEVELS, Quantity
+from mpm_verify.cases.judging.records import Reason, ReasonCode, Recorded
+from mpm_verify.solver.failure import FailureKind
+
+FAR = 2.0  # times the recorded error, carried over to the finest cells
+WELL_BELOW = 1.5  # the band over the local orders of the two finest pairs
+FLAT = 0.5  # local order of an error that was falling and falls no more: a floor
+CLEAR = 100.0  # times the round-off floor, else an error that does not fall is that floor
+ASTRAY = (FailureKind.INVERTED, FailureKind.DOMAIN_INVERTED, FailureKind.OUTSIDE_GRID)
+
+
+def evidence(q: Quantity) -> Reason | None:
+    """First reason to say FAIL; None where there is none.
+
+    Recorded errors are those of the runs with the particles at their usual positions.
+    """
+    return _magnitude(q) or (None if q.expectation.order is None else _ended(q))
+
+
+def carried(q: Quantity) -> tuple[Recorded, float]:
+    """Recorded error of the cells nearest to the finest, and the finest error over it, carried there by the order."""
+    h, error = float(q.fit.h[-1]), float(q.fit.error[-1])
+    near = min(q.expectation.recorded, key=lambda one: abs(log(one.h / h)))
+    return near, near.ratio(error * (near.h / h) ** (q.expectation.order or 0.0))
+
+
+def _magnitude(q: Quantity) -> Reason | None:
+    """Error that is not the recorded one: the worst of those that count, or far off where none was run."""
+    e, levels = q.expectation, q.known[-1:] if q.expectation.finest else q.known
+    ratios = {level.h: known.ratio(level.errors[0]) for level, known in levels}
+    wrong = {h: ratio for h, ratio in ratios.items() if abs(ratio - 1) > e.within}
+    if wrong:
+        h = max(wrong, key=lambda h: abs(log(wrong[h])) if wrong[h] > 0 else 0.0)
+        return Reason(ReasonCode.MAGNITUDE, {"h": h, "ratio": wrong[h], "within": e.within})
+    if ratios or not e.recorded or e.order is None or not len(q.fit.h):
+        return None
+    near, ratio = carried(q)
+    numbers = {"h": float(q.fit.h[-1]), "ratio": ratio, "recorded_h": near.h}
+    return Reason(ReasonCode.FAR_OFF, {**numbers}) if ratio > FAR else None
+
+
+def _ended(q: Quantity) -> Reason | None:
+    """Runs whose particles were inverted or left the grid."""
+    ended = tuple(end for level in q.ordered if (end := level.ended) and any(map(level.failed_by, ASTRAY)))
+    return Reason(ReasonCode.RUN_ENDED, failed=ended) if ended else None
+
+
+def tail(q: Quantity) -> Reason | None:
+    """Local orders of the two finest pairs that are well below the band, and do not rise to it: no gate excuses them."""
+    fit, low = q.fit, q.band[0]
+    if (
+        q.expectation.order is None
+        or len(fit.orders) < LEVELS - 1
+        or fit.lowest <= CLEAR * q.floor
+        or fit.rises_to(low)
+    ):
+        return None
+    first, last = (float(order) for order in fit.orders[-2:])
+    if max(first, last) > low / WELL_BELOW:
+        return None
+    numbers = {"first": first, "last": last, "band_low": low}
+    fell = {"flat": float(fit.error[-1])} if max(fit.orders[:-2]) >= low and last < FLAT else {}
+    return Reason(ReasonCode.FALLS_SHORT, {**numbers, **fell})
