@@ -288,7 +288,7 @@ def test_gate_time_step_compares_the_unshifted_run() -> None:
 
 
 @pytest.mark.parametrize(("tail", "code"), [
-    ((2.0, 2.0, 0.1, -0.1), "falls_short"), ((2.0, 2.0, 1.19, 1.19), "falls_short"), ((0.0, 0.0, 0.0, 0.0), "falls_short"),
+    ((2.0, 2.0, 0.1, -0.1), "falls_short"), ((2.0, 2.0, 1.19, 1.19), "falls_short"), ((0.0,) * 4, "falls_short"),
     ((-0.5, -0.5, -0.5, -0.5), "falls_short"), ((2.0, 2.0, 1.3, 1.3), "contaminated"),
     ((0.5, 0.9, 1.1, 1.19), "order_undecided"),
 ])  # fmt: skip

@@ -1,5 +1,6 @@
 """From Results to verdicts and an exit code; what the MMS study declares to judge before it runs."""
 
+import sys
 from collections.abc import Iterator
 from dataclasses import replace
 
@@ -259,7 +260,12 @@ def test_recorded_errors_of_another_solver_count_on_its_finest_cells() -> None:
 
 
 def test_an_order_that_is_given_is_of_u_and_the_others_have_to_converge() -> None:
-    asked = {"cells": (8, 16, 32, 64), "ppc": (4,), "solver": ("./mine {case} {out}",), "solver_version": ("1",)}
+    asked = {
+        "cells": (8, 16, 32, 64),
+        "ppc": (4,),
+        "solver": (f"{sys.executable} {{case}} {{out}}",),
+        "solver_version": ("1",),
+    }
     plans = build(Asked("mms", {**asked, "order": (2.0,)}), "verify mms", "mms").plans
     assert [(p.quantity, p.expectation.order) for p in plans if p.judged] == [("u", 2.0)]
     assert [(p.quantity, p.expectation.order) for p in plans if p.refutes] == [("v", 1.0), ("F", 1.0), ("sigma", 1.0)]

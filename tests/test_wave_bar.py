@@ -97,7 +97,7 @@ def test_a_wrong_modulus_is_seen(monkeypatch: pytest.MonkeyPatch, tmp_path: Path
         return model, omega, steps
 
     monkeypatch.setattr(runs, "setup", wrong)
-    assert verify(monkeypatch, *QUICK, "--no-page", "--cells", "8,16,32,64") == 3  # "the error does not fall"
+    assert verify(monkeypatch, *QUICK, "--no-page", "--cells", "8,16,32,64") == 1
 
 
 def test_an_unstable_step_is_a_failed_run() -> None:

@@ -50,7 +50,7 @@ def _ended(q: Quantity) -> Reason | None:
 
 
 def tail(q: Quantity) -> Reason | None:
-    """Local orders of the two finest pairs that are well below the band, and do not rise to it: no gate excuses them."""
+    """Local orders of the two finest pairs well below the band, which do not rise to it: no gate excuses them."""
     fit, low = q.fit, q.band[0]
     if (
         q.expectation.order is None

@@ -157,7 +157,7 @@ class ReasonCode(StrEnum):
     MAGNITUDE = "magnitude"  # FAIL [h, ratio, within]
     FAR_OFF = "far_off"  # FAIL: more than FAR times the recorded error, carried over [h, ratio, recorded_h]
     RUN_ENDED = "run_ended"  # FAIL: particles were inverted or left the grid, where an order is expected
-    FALLS_SHORT = "falls_short"  # FAIL: both finest local orders are well below the band [first, last, band_low; flat, of a floor]
+    FALLS_SHORT = "falls_short"  # FAIL: both finest local orders [first, last, band_low; flat, of a floor]
     CONVERGES = "converges"  # FAIL: not expected [h_0, error_0, h_1, error_1, order]
     NOTHING_FINISHED = "nothing_finished"  # ERROR
     TOO_FEW_LEVELS = "too_few_levels"  # INCONCLUSIVE from here on [levels needed]

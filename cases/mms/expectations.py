@@ -91,9 +91,9 @@ def expected(
 ) -> Expectation | None:
     """Registered expectation, for canonical specifications; None where there is none: only shown.
 
-    `usual` says that the scheme is the one whose errors are recorded: within 1 % everywhere, or, `theirs`, of a solver of
-    somebody else, within 10 % on the finest cells, of one order of the step or another. A user's own solution has the order of u
-    that its file declares, or else the one that the method promises.
+    `usual` says that the scheme is the one whose errors are recorded: within 1 % everywhere, or, `theirs`, of a solver
+    of somebody else, within 10 % on the finest cells, of one order of the step or another. A user's own solution has
+    the order of u that its file declares, or else the one that the method promises.
     """
     if norm != "rms" or ppc not in JUDGED_PPC:
         return None
