@@ -588,7 +588,7 @@ def test_hints_reach_a_ci_job(tmp_path: Path) -> None:
     done = called(tmp_path, pulling_is_pushing)
     write_junit(tmp_path / "out.xml", done.record)
     for text in ((tmp_path / "out.xml").read_text(), markdown(done.record)):
-        assert "sigma fits with the other sign" in text
+        assert "sigma fits that of F with the other sign" in text
     assert all("sigma_sign" in result.values for result in done.record.results.values())
 
 
