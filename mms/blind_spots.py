@@ -89,8 +89,8 @@ def one_dimensional(n: Numbers) -> bool:
 RULES: dict[BlindSpotCode, tuple[Callable[[Numbers], bool], tuple[str, ...]]] = {  # when it is blind, what tells it
     BlindSpotCode.SHEAR: (lambda n: n["shear"] <= FAINT * n["strain"], ("shear",)),
     BlindSpotCode.ROTATION: (lambda n: n["rotation_deg"] < TURNED, ("rotation_deg",)),
-    BlindSpotCode.ORDER: (lambda n: n["order"] <= FAINT * n["strain"], ("order",)),
-    BlindSpotCode.SPIN: (lambda n: n["spin"] <= FAINT, ("spin",)),
+    BlindSpotCode.ORDER: (lambda n: n["order"] <= FAINT * n["strain"] or n["strain"] < SMALL, ("order", "strain")),
+    BlindSpotCode.SPIN: (lambda n: n["spin"] <= FAINT, ("spin", "strain")),
     BlindSpotCode.VOLUME: (volume_kept, ("J_min", "J_max")),
     BlindSpotCode.GRADIENT: (lambda n: n["gradient"] <= FAINT * n["strain"], ("gradient",)),
     BlindSpotCode.START: (lambda n: n["start_acceleration"] <= WEAK, ("start_acceleration",)),

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from mpm_verify.mms.blind_spots import CLEAR, FAINT, ROUND, SEEN_BY, BlindSpot, BlindSpotCode, Numbers
+from mpm_verify.mms.blind_spots import CLEAR, FAINT, ROUND, SEEN_BY, SMALL, BlindSpot, BlindSpotCode, Numbers
 from mpm_verify.reports.sentences.numbers import figure, percent
 
 MINUS = "\N{MINUS SIGN}"
@@ -51,6 +51,15 @@ def no_volume(n: Numbers) -> str:
     return f"{how}, so a wrong volumetric response (lambda drops out), a missing 1/J and V0 instead of V are invisible."
 
 
+def volume(n: Numbers) -> str:
+    """Sentence on how far det F goes."""
+    low, high = figure(n["J_min"]), figure(n["J_max"])
+    how = f"runs from {low} to {high}"
+    if low == high:
+        how = f"differs from 1 by up to {figure(max(1 - n['J_min'], n['J_max'] - 1))}"
+    return f"det F {how}, so the volumetric response takes part."
+
+
 def begins(part: float, what: str) -> str:
     """Phrase such as `without velocity` or `with 1 % of the largest velocity`."""
     return f"without {what}" if part < ROUND else f"with {percent(part)} of the largest {what}"
@@ -87,12 +96,27 @@ def no_plane(n: Numbers) -> str:
     return f"The problem is one-dimensional: {still} is all but zero, so half of the code is not tested."
 
 
+def small(n: Numbers) -> bool:
+    """Whether strains are so small that what is of second order in them is not seen; not of old Results."""
+    return n.get("strain", SMALL) < SMALL
+
+
+def no_order(n: Numbers) -> str:
+    """Sentence on factors whose order does not matter."""
+    why = "The strains are small" if small(n) else "F and the velocity gradient L commute"
+    return f"{why}, so F (I + dt L) instead of (I + dt L) F is invisible."
+
+
+def spin(n: Numbers) -> str:
+    """Sentence on the skew part of L, which moves the body only where strains are not small."""
+    where = " in F, though not in u or sigma, for the strains are small" if small(n) else ""
+    return f"The velocity gradient L is not symmetric, so L transposed shows{where}."
+
+
 BLIND: dict[BlindSpotCode, Words] = {
     BlindSpotCode.SHEAR: no_shear,
     BlindSpotCode.ROTATION: no_rotation,
-    BlindSpotCode.ORDER: lambda n: (
-        "F and the velocity gradient L commute, so F (I + dt L) instead of (I + dt L) F is invisible."
-    ),
+    BlindSpotCode.ORDER: no_order,
     BlindSpotCode.SPIN: lambda n: "The velocity gradient L is symmetric, so L transposed is invisible.",
     BlindSpotCode.VOLUME: no_volume,
     BlindSpotCode.GRADIENT: lambda n: (
@@ -142,10 +166,8 @@ SEEN: dict[BlindSpotCode, Words] = {
     BlindSpotCode.ORDER: lambda n: (
         "F and the velocity gradient L do not commute, so a wrong order in the update of F shows."
     ),
-    BlindSpotCode.SPIN: lambda n: "The velocity gradient L is not symmetric, so L transposed shows.",
-    BlindSpotCode.VOLUME: lambda n: (
-        f"det F runs from {figure(n['J_min'])} to {figure(n['J_max'])}, so the volumetric response takes part."
-    ),
+    BlindSpotCode.SPIN: spin,
+    BlindSpotCode.VOLUME: volume,
     BlindSpotCode.GRADIENT: lambda n: (
         f"The gradient of F reaches {figure(n['gradient'])} over the body's width, so the stress has one too."
     ),

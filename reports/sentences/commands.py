@@ -10,7 +10,7 @@ from typing import Any
 from mpm_verify.cases.harness.study import QuantityPlan, Study, head
 from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.cases.judging.records import Action, Outcome, ReasonCode, Wanted
-from mpm_verify.reports.sentences import any_code, verdicts
+from mpm_verify.reports.sentences import any_code, own_solver, verdicts
 from mpm_verify.solver.failure import FailureKind
 from mpm_verify.solver.plugins import is_file, split
 
@@ -19,6 +19,8 @@ def reason(study: Study[Any], found: Finding) -> str:
     """Reason of a verdict, and the option that asks for the run that would decide where nothing does."""
     if found.plan.run.given:
         return ": ".join(filter(None, [verdicts.said(found.verdict.reason), decides(study, found)]))
+    if no_step_decides(found):
+        return verdicts.said(found.verdict.reason)
     return verdicts.reason(found.verdict.reason, courants(study, found.plan))
 
 
@@ -28,7 +30,7 @@ def command(study: Study[Any], found: Finding, folder: Path | None = None) -> st
     It goes on in the `folder` of the study where that is not the usual one.
     """
     r = found.verdict.reason
-    if r.wanted is None or found.plan.run.given:
+    if r.wanted is None or found.plan.run.given or no_step_decides(found):
         return ""
     if r.wanted.action is Action.FINISH:
         return study.command if r.failed[0].failure.kind is FailureKind.NOT_RUN else ""
@@ -49,6 +51,18 @@ def decides(study: Study[Any], found: Finding, folder: Path | None = None) -> st
     return command(study, found, folder)
 
 
+def no_step_decides(found: Finding) -> bool:
+    """Whether smaller time steps are asked for where a solver of somebody else loses something in each step."""
+    wanted = found.verdict.reason.wanted
+    halves = wanted is not None and wanted.action in (Action.HALVE_ALL, Action.HALVE_FINEST)
+    return halves and bool(hinted(found) & set(own_solver.LOSSES))
+
+
+def hinted(found: Finding) -> set[str]:
+    """Names of the hints on a solver of somebody else; none of the reference solver."""
+    return own_solver.causes(found.results) if getattr(found.plan.run, "solver", "") else set()
+
+
 LOW = 1.8  # order below which time levels may be to blame
 
 
@@ -66,6 +80,9 @@ def levels_to_blame(found: Finding) -> bool:
     """Whether time levels may be why a solver of somebody else has not the order that is expected."""
     verdict, solver = found.verdict, str(getattr(found.plan.run, "solver", ""))
     if not found.plan.judged or not solver or verdict.outcome is Outcome.PASS:
+        return False
+    named = hinted(found)
+    if named and not named & set(own_solver.TIMES):
         return False
     low = verdict.observed is not None and 0 < verdict.observed < LOW
     return low or verdict.reason.code is ReasonCode.TIME_STEP_COUPLED

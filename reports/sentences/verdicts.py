@@ -118,7 +118,10 @@ def _seen(r: Reason) -> list[str]:
 
 
 def _nothing_finished(r: Reason) -> str:
-    ends = "; ".join(f"h={words.size(end.h)}: {ended(end)}" for end in r.failed)
+    told = [ended(end) for end in r.failed]
+    if len(told) > 1 and len(set(told)) == 1:
+        return f"no level finished (all {len(told)}: {told[0]})"
+    ends = "; ".join(f"h={words.size(end.h)}: {one}" for end, one in zip(r.failed, told, strict=True))
     return f"no level finished ({ends or 'there is none'})"
 
 

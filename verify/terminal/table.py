@@ -21,6 +21,7 @@ from mpm_verify.solver.plugins import label
 
 STYLES = {"PASS": "bold green", "FAIL": "bold red", "INCONCLUSIVE": "bold yellow", "ERROR": "bold magenta"}
 ALWAYS = ("u", "rms")
+SAME = "the same"  # as the level above, that failed
 
 
 class Listened(Console):
@@ -109,11 +110,13 @@ def rows(record: Record, finding: Finding) -> Iterator[tuple[str, ...]]:
     """Rows, one for each level; names once a block."""
     plan, orders = finding.plan, iter(finding.verdict.local_orders)
     first: tuple[str, ...] = (*columns(record, plan).values(), words.measured(plan, " "))
-    earlier = False
+    earlier, above = False, ""
     for level, passed in zip_longest(finding.levels, finding.crossings):
         cells, faces = record.named(level.h), "" if passed is None else f"{passed:.1f}"
         if level.ended:
-            yield (*first, cells, "-", "", faces, verdicts.ended(level.ended))
+            why = verdicts.ended(level.ended)
+            yield (*first, cells, "-", "", faces, SAME if why == above else why)
+            above = why
         else:
             local = order(next(orders, None)) if earlier else ""
             yield (*first, cells, f"{middle(level.errors):.3e}", local, faces, "")

@@ -20,7 +20,9 @@ from mpm_verify.solver.state import Floats
 
 @dataclass(frozen=True)
 class Frame:
-    """Frame: x (P,2) and what else there is of v (P,2), F (P,4) and sigma (P,4), in the order of the case.
+    """Frame: x (P,2) and what else there is of v (P,2), F (P,4), sigma (P,4), X (P,2) and volume V (P,1).
+
+    Rows are in the order of the case.
 
     `resolution` is the rounding of the numbers in the file by quantity, standard deviation in their units.
     """

@@ -26,7 +26,7 @@ FORMATS: dict[str, Format] = {
 NUMBERS = {"step": 1, "time": 0.5, "index": 1}  # what a name of a file may hold, with an example of each
 NUMBERED = ("pvd", "lammps")  # formats whose files say which frame is which
 KEEPS = "row"  # id of rows in the order of the particles
-NAMES = ("id", "X", "Y", *(name for q, parts in QUANTITIES.items() for name in dict.fromkeys((q, *parts))))
+NAMES = ("id", *dict.fromkeys(name for q, parts in QUANTITIES.items() for name in (q, *parts)))
 
 
 def lag(value: float) -> float:

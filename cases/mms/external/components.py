@@ -7,15 +7,16 @@ QUANTITIES = {
     "v": ("vx", "vy"),
     "F": ("Fxx", "Fxy", "Fyx", "Fyy"),
     "sigma": ("sxx", "syy", "szz", "sxy"),
+    "X": ("X", "Y"),
+    "V": ("V",),
 }
 
 
 def spread(stored: dict[str, Any]) -> dict[str, Any]:
     """Columns of arrays by name; X, x, v, F and sigma may hold all their components."""
-    names = {**QUANTITIES, "X": ("X", "Y")}
     found: dict[str, Any] = {}
     for name, values in stored.items():
-        parts = names.get(name)
+        parts = QUANTITIES.get(name)
         if parts is None or values.ndim == 1:
             found[name] = values
             continue

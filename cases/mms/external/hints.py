@@ -1,76 +1,98 @@
-"""Hints on why an answer is wrong: readings of it that fit the exact fields far better than what it says."""
+"""Hints on why an answer is wrong: causes and readings that are measured on its files, the best one first.
 
-from collections.abc import Callable
-from math import inf, sqrt
+What moved the body is asked in turn, and one cause is named: particles in another order, nothing that moves, positions
+of another time, walls, the forces, the start. F, volume and stress are held against the answer itself, so no cause of a
+wrong motion makes a hint of them. Time levels of v and F are asked for only where the motion has no cause.
+"""
+
+from math import inf
 
 import numpy as np
 
+from mpm_verify.cases.mms.external import consistency, motion
 from mpm_verify.cases.mms.external.answer import Frame
+from mpm_verify.cases.mms.external.balance import Balance
+from mpm_verify.cases.mms.external.evidence import Evidence
 from mpm_verify.cases.mms.external.levels import Levels
+from mpm_verify.mms.export.case import Exported
 from mpm_verify.mms.manufacture import Manufactured
-from mpm_verify.solver.state import Floats
 
-BETTER = 0.5  # factor on an error that is no accident
-STILL = 1e-3  # of the exact displacement: nothing has moved
-SHIFTS = (-3, -2, -1, 1, 2, 3)  # steps
 LAGS = (-0.5, 0.0, 0.5, 1.0)  # steps that a field may be behind x
-
-Reading = Callable[[Floats], Floats]
-READINGS: dict[str, tuple[str, Reading]] = {  # name of a hint: the field, and what it may be instead
-    "F_transposed": ("F", lambda F: F[:, (0, 2, 1, 3)]),
-    "F_twice": ("F", lambda F: np.array([1.0, 0.0, 0.0, 1.0]) + 0.5 * (F - np.array([1.0, 0.0, 0.0, 1.0]))),
-    "sigma_sign": ("sigma", lambda sigma: -sigma),
-}
+FEW = 8  # frames that a balance in time takes
+FAR = 10.0  # widths of the body: such displacements say nothing
+ALONE = ("id_and_X", "permuted", "still", "x_is_u")  # of a motion that says nothing more
 
 
-def hints(exact: Manufactured, X: Floats, dt: float, frames: dict[int, Frame], levels: Levels) -> dict[str, float]:
-    """Find readings of an answer that would at least halve its error.
+def hints(exact: Manufactured, case: Exported, frames: dict[int, Frame], levels: Levels) -> dict[str, float]:
+    """Find what explains an answer far better than what it says: at least half of an error or of a balance.
 
     Parameters
     ----------
     exact
         Exact fields.
-    X
-        Reference positions (P,2).
-    dt
-        Length of a time step.
+    case
+        Case that was given: particles, grid, edges, time step.
     frames
-        Frames by the number of their step.
+        Frames by the number of their step, at least two.
     levels
         Time levels that the answer states.
 
     Returns
     -------
     dict
-        `still`: displacement over the exact one; `shift`, `v_lag`, `F_lag`: steps of the level that fits best;
-        others, of READINGS: the error so read over the error as it is. Only what at least halves the error.
+        Numbers by the name of a hint; reports/sentences/own_solver.py says what each of them is. Empty where nothing
+        explains half of anything, as of a sound answer.
     """
+    e = Evidence(exact, case, frames, levels)
+    if case.record.dimension != 2 or np.abs(e.u).max() > FAR * np.ptp(e.X):
+        return {}
+    with np.errstate(all="ignore"):
+        return explained(e)
 
-    def error(key: str, lag: float, reading: Reading = lambda values: values) -> float:
-        if not all(key in frame.fields for frame in frames.values()):
-            return inf
-        truth = {"x": exact.x, "v": exact.v, "F": exact.F, "sigma": exact.sigma}[key]
-        gaps = [reading(frame.fields[key]) - truth(X, (step - lag) * dt).reshape(len(X), -1)
-                for step, frame in frames.items()]  # fmt: skip
-        return sqrt(float(np.mean([np.mean(gap**2) for gap in gaps])))
 
-    moved = sqrt(float(np.mean([np.mean((frame.fields["x"] - X) ** 2) for frame in frames.values()])))
-    meant = sqrt(float(np.mean([np.mean(exact.u(X, step * dt) ** 2) for step in frames])))
-    if moved <= STILL * meant:
-        return {"still": moved / meant}
-    found: dict[str, float] = {}
-    as_it_is = error("x", 0.0)
-    best = min(SHIFTS, key=lambda steps: error("x", steps))
-    if error("x", best) < BETTER * as_it_is:
-        return {"shift": float(best)}
-    if error("x", 0.0, lambda x: x + X) < BETTER * as_it_is:
-        return {"x_is_u": 1.0}
-    told = {"v": levels.v_lag, "F": levels.F_lag, "sigma": levels.F_lag}
-    for key, name in (("v", "v_lag"), ("F", "F_lag")):
-        lag = min(LAGS, key=lambda steps, key=key: error(key, steps))  # type: ignore[misc]
-        if error(key, lag) < BETTER * error(key, told[key]):
-            found[name] = lag
-    for name, (key, reading) in READINGS.items():
-        if error(key, told[key], reading) < BETTER * error(key, told[key]):
-            found[name] = error(key, told[key], reading) / error(key, told[key])
+def explained(e: Evidence) -> dict[str, float]:
+    """Causes and readings of an answer that is worth reading."""
+    found = motion.single(e)
+    moved = motion.order(e) or motion.still(e) or motion.displacements(e) or motion.walls(e) or by_time(e)
+    if moved.keys() & set(ALONE):
+        return moved | found
+    of_F = consistency.of_F(e)
+    of_sigma = consistency.of_stress(e, bool(of_F))
+    if "F_twice" in of_F or of_sigma.keys() & {"sigma_mean", "plane_stress"}:
+        moved = {name: value for name, value in moved.items() if name not in ("stress_factor", "stress_of_F")}
+    rest = of_F | consistency.of_volume(e) | of_sigma
+    if not moved:
+        levels = motion.at_walls(e) or other_levels(e)
+        if of_F:
+            levels.pop("F_lag", None)
+        if "F_lag" in levels:
+            rest.pop("sigma_lag", None)
+        rest |= levels
+    return moved | rest | found
+
+
+def by_time(e: Evidence) -> dict[str, float]:
+    """Another time of the positions, or a force, stress or start that the momentum balance names.
+
+    The one that leaves less. The balance is taken of rectangles.
+    """
+    found, left = motion.other_times(e)
+    if e.case.record.body != "rectangle" or len(e.frames) < FEW or not e.stressed:
+        return found
+    balance = Balance(e)
+    tried = balance.tried()
+    cause, rest = motion.forces(tried, e.case.record.steps)
+    return (cause if rest < left else found) or motion.start(balance, tried)
+
+
+def other_levels(e: Evidence) -> dict[str, float]:
+    """Steps that v and F are behind x, where another number than is stated at least halves their error."""
+    found = {}
+    for key, name, told in (("v", "v_lag", e.levels.v_lag), ("F", "F_lag", e.levels.F_lag)):
+        if not e.has(key):
+            continue
+        errors = {lag: motion.rms(e.given(key) - e.truth(key, lag)) for lag in {*LAGS, told}}
+        best = min(LAGS, key=errors.__getitem__)
+        if errors[best] < motion.BETTER * errors.get(told, inf):
+            found[name] = best
     return found
