@@ -101,6 +101,8 @@ class Manufactured:
 
         def source() -> str:
             f = self.fields
+            if len(f.X) == 3:  # in coordinates alone its expressions are so long that b takes ten seconds
+                return printed((*f.X, f.t), getattr(f, name), f.inner)
             return printed((*f.X, f.t), f.full(getattr(f, name)))
 
         compiled = function(self.text(name, source))

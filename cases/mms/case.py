@@ -12,9 +12,10 @@ from mpm_verify.cases.harness.build import Asked
 from mpm_verify.cases.judging.records import Expectation
 from mpm_verify.cases.mms.expectations import JUDGED_QUANTITY, expected
 from mpm_verify.cases.mms.external.command import PYTHON, program, version
-from mpm_verify.cases.mms.run import AXES, NORMS, QUANTITIES, QUICK, Result, Run
+from mpm_verify.cases.mms.run import AXES, NORMS, QUANTITIES, QUICK, SOLID, Result, Run
 from mpm_verify.cases.mms.stability import check_time_steps
 from mpm_verify.mms.cells import fitting, ratio
+from mpm_verify.mms.discretisation import dimension
 from mpm_verify.mms.energy import check_energy
 from mpm_verify.solver.plugins import (
     LAYOUTS,
@@ -26,6 +27,7 @@ from mpm_verify.solver.plugins import (
     is_file,
     label,
 )
+from mpm_verify.solver.layout import per_side
 from mpm_verify.solver.plugins import canonical as canonical_name
 from mpm_verify.solver.stress_update import check_stress_update
 
@@ -52,6 +54,9 @@ def title(runs: Sequence[Run]) -> str:
 def canonical(values: dict[str, Any]) -> dict[str, Any]:
     """Specifications with only the parameters that differ from their defaults, and the solution's own material."""
     solution = values["solution"] = canonical_name(SOLUTIONS, values.get("solution", Run.solution))
+    own = dimension(create(SOLUTIONS, solution))
+    if values.setdefault("dim", own) < own:
+        raise ValueError(f"{label(solution)} has three dimensions, dim = {values['dim']} cannot be; leave it out")
     values["material"] = canonical_name(MATERIALS, values.get("material") or create(SOLUTIONS, solution).material)
     values["transfer"] = canonical_name(TRANSFERS, values.get("transfer", Run.transfer))
     values["layout"] = canonical_name(LAYOUTS, values.get("layout", Run.layout))
@@ -79,11 +84,30 @@ def check(runs: Sequence[Run]) -> None:
     check_theirs([run for run in runs if run.solver])
     if any(run.start and not run.solver for run in runs):
         raise ValueError("--start is for a solver of your own; give --solver too")
+    check_ours([run for run in runs if not run.solver])
+    check_solutions(runs)
+
+
+def check_ours(runs: Sequence[Run]) -> None:
+    """Raise ValueError for three dimensions, which the reference solver does not have."""
+    for run in runs:
+        if run.dim == 3:
+            what = f"--solution {label(run.solution)}" + " --dim 3" * (not run.solid)
+            raise ValueError(
+                f"{label(run.solution)} in three dimensions is for a solver of your own, the reference solver has two: "
+                f"verify mms --solver './mine {{case}} {{out}}' {what}"
+            )
+
+
+def check_solutions(runs: Sequence[Run]) -> None:
+    """Raise ValueError with one line for a solution, material or layout that no solver can run."""
     cells: dict[tuple[str, str, str], set[int]] = {}
     for run in runs:
         cells.setdefault((run.solution, run.material, run.layout), set()).add(run.cells)
     for (specification, model, layout), counts in cells.items():
         solution, material = create(SOLUTIONS, specification), create(MATERIALS, model)
+        for run in (run for run in runs if run.solution == specification):
+            per_side(run.ppc, dimension(solution))
         check_energy(material)
         create(LAYOUTS, layout).check(solution)
         if is_file(specification):
@@ -106,6 +130,11 @@ def check_theirs(runs: Sequence[Run]) -> None:
 def parts(asked: Asked) -> list[Asked]:
     """Parts of the request, with cells that fill the body of each solution, where no cells were asked for."""
     solutions = asked.values.get("solution", (Run.solution,))
+    solid = [one for one in solutions if dimension(create(SOLUTIONS, one)) == 3]
+    if solid:
+        flat = tuple(one for one in solutions if one not in solid)
+        rest = parts(replace(asked, values={**asked.values, "solution": flat})) if flat else []
+        return [*rest, replace(asked, values={**SOLID, **asked.values, "solution": tuple(solid)})]
     if any(asked.values.get("solver", ())) and not asked.quick:
         asked = replace(asked, values={**THEIRS, **asked.values})
     if "cells" in asked.values or not any(is_file(one) for one in solutions):
