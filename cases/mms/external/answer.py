@@ -1,7 +1,8 @@
 """Answer of somebody else's solver: files of frames, matched to the particles of the case.
 
 result_<step>.csv (or .tsv, .npz, .vtu) has a row a particle, in any order: `id`, or the reference position `X`, `Y`;
-`x`, `y`; and any of `vx vy`, `Fxx Fxy Fyx Fyy`, `sxx syy szz sxy`. result.json says which time level a field has.
+`x`, `y`; and any of `vx vy`, `Fxx Fxy Fyx Fyy`, `sxx syy szz sxy`. In three dimensions there are `Z`, `z`, `vz`, nine
+components of F, and `syz sxz`. result.json says which time level a field has.
 """
 
 import json
@@ -12,24 +13,21 @@ from typing import Any
 
 import numpy as np
 
+from mpm_verify.cases.mms.external.components import NAMES, QUANTITIES, UPPER
+from mpm_verify.mms.derive import AXES
 from mpm_verify.solver.failure import FailureKind, RunFailed
 from mpm_verify.solver.state import Floats
 
-QUANTITIES = {
-    "x": ("x", "y"),
-    "v": ("vx", "vy"),
-    "F": ("Fxx", "Fxy", "Fyx", "Fyy"),
-    "sigma": ("sxx", "syy", "szz", "sxy"),
-}
 ENDINGS = ("csv", "tsv", "txt", "npz", "vtu")
 NEAR = 1e-3  # spacings: how far a reference position may be from that of its particle
 LEVELS = {"v_lag": 0.5, "F_lag": 0.0}  # steps that v and F with sigma are behind x, where result.json does not say
+FEW = 8  # different numbers, which may be of single precision by accident
 SAMPLE = 200  # numbers that the digits of a file are told from
 
 
 @dataclass(frozen=True)
 class Frame:
-    """Frame: x (P,2) and what else there is of v (P,2), F (P,4) and sigma (P,4), in the order of the case.
+    """Frame: x (P,d) and what else there is of v (P,d), F (P,d*d) and sigma (P,4 or 6), in the order of the case.
 
     `resolution` is the rounding of the numbers in the file by quantity, standard deviation in their units.
     """
@@ -80,7 +78,7 @@ def read(out: Path, step: int, X: Floats, spacing: float) -> Frame:
     step
         Number of the step.
     X
-        Reference positions (P,2) of the case.
+        Reference positions (P,d) of the case.
     spacing
         Distance of particles, a length.
 
@@ -101,7 +99,8 @@ def read(out: Path, step: int, X: Floats, spacing: float) -> Frame:
 
 
 def framed(columns: dict[str, Any], X: Floats, spacing: float, file: str, step: int) -> Frame:
-    """Frame of columns as they were written, in the order of X (P,2). Raises RunFailed."""
+    """Frame of columns as they were written, in the order of X (P,d). Raises RunFailed."""
+    quantities = QUANTITIES[X.shape[1]]
     try:
         numbers = {name: np.asarray(values, dtype=np.float64) for name, values in columns.items()}
         resolution = rounding(columns)
@@ -109,12 +108,12 @@ def framed(columns: dict[str, Any], X: Floats, spacing: float, file: str, step: 
         raise RunFailed(FailureKind.UNREADABLE, step, names={"file": file}) from None
     if len({len(values) for values in numbers.values()}) > 1 or not numbers:
         raise RunFailed(FailureKind.UNREADABLE, step, names={"file": file})
-    for name in QUANTITIES["x"]:
+    for name in quantities["x"]:
         if name not in numbers:
             raise RunFailed(FailureKind.NO_COLUMN, step, names={"file": file, "column": name})
     order = matched(numbers, X, spacing, file, step)
     found, digits = {}, {}
-    for quantity, names in QUANTITIES.items():
+    for quantity, names in quantities.items():
         if not all(name in numbers for name in names):
             continue
         values = np.stack([numbers[name] for name in names], axis=-1)[order]
@@ -122,7 +121,8 @@ def framed(columns: dict[str, Any], X: Floats, spacing: float, file: str, step: 
             particle = int(np.argwhere(~np.isfinite(values).all(axis=1))[0, 0])
             raise RunFailed(FailureKind.NOT_FINITE, step, particle, names={"file": file})
         found[quantity] = values
-        digits[quantity] = float(np.sqrt(sum(resolution.get(name, 0.0) ** 2 for name in names)))
+        told = float(np.sqrt(sum(resolution.get(name, 0.0) ** 2 for name in names)))
+        digits[quantity] = max(told, single(values))
     return Frame(found, digits)
 
 
@@ -156,27 +156,22 @@ def mesh(path: Path) -> dict[str, Any]:
 
     read_ = meshio.read(path)
     data = {name: np.asarray(values) for name, values in read_.point_data.items()}
-    return spread({"x": np.asarray(read_.points)[:, :2], **data})
+    return spread({"x": np.asarray(read_.points), **data})
 
 
 def spread(stored: dict[str, Any]) -> dict[str, Any]:
     """Columns of arrays by name; X, x, v, F and sigma may hold all their components."""
-    names = {**QUANTITIES, "X": ("X", "Y")}
     found: dict[str, Any] = {}
     for name, values in stored.items():
-        parts = names.get(name)
-        if parts is None or values.ndim == 1:
+        if values.ndim == 1 or name not in {one for one, _ in NAMES}:
             found[name] = values
             continue
         flat = values.reshape(len(values), -1)
-        if name == "F" and flat.shape[1] == 9:
-            flat = flat[:, (0, 1, 3, 4)]
-        elif name == "sigma" and flat.shape[1] == 9:
-            flat = flat[:, (0, 4, 8, 1)]
-        elif flat.shape[1] == 3 and len(parts) == 2:
-            flat = flat[:, :2]
-        if flat.shape[1] != len(parts):
+        if name == "sigma" and flat.shape[1] == 9:
+            flat = flat[:, UPPER]
+        if (name, flat.shape[1]) not in NAMES:
             raise ValueError(name)
+        parts = NAMES[name, flat.shape[1]]
         found |= {part: flat[:, k] for k, part in enumerate(parts)}
     return found
 
@@ -195,11 +190,12 @@ def matched(columns: dict[str, Floats], X: Floats, spacing: float, file: str, st
             same = len(np.unique(given[np.isin(given, np.arange(len(X)))]))
             raise others(same, len(X), file, step)
         return order
-    if not {"X", "Y"} <= columns.keys():
+    axes = AXES[: X.shape[1]].upper()
+    if not set(axes) <= columns.keys():
         raise RunFailed(FailureKind.NO_COLUMN, step, names={"file": file, "column": "id"})
     from scipy.spatial import cKDTree
 
-    given = np.stack([columns["X"], columns["Y"]], axis=-1)
+    given = np.stack([columns[axis] for axis in axes], axis=-1)
     if not np.isfinite(given).all():
         raise RunFailed(FailureKind.NOT_FINITE, step, names={"file": file})
     distance, order = cKDTree(given).query(X)
@@ -237,6 +233,18 @@ def rounding(columns: dict[str, Any]) -> dict[str, float]:
             size = np.sqrt(np.mean(np.square(values, dtype=np.float64)))
             found[name] = float(np.finfo(values.dtype).eps * size / np.sqrt(12.0))
     return found
+
+
+def single(values: Floats) -> float:
+    """Standard deviation of the rounding of a field (P,n) whose numbers are all of single precision, however printed.
+
+    Zero for any other: more than a few have to differ, since zeros, ones and halves are of single precision too.
+    """
+    with np.errstate(over="ignore"):
+        short = values.astype(np.float32)
+    if not (short == values).all() or len(np.unique(short)) <= FEW:
+        return 0.0
+    return float(np.finfo(np.float32).eps * np.sqrt(np.mean(np.square(values)) * values.shape[1] / 12))
 
 
 def some(values: Any) -> list[tuple[Decimal, bool]]:

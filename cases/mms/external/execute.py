@@ -5,7 +5,6 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
-from math import sqrt
 from pathlib import Path
 
 import numpy as np
@@ -16,14 +15,18 @@ from mpm_verify.cases.mms.exact import audited, manufactured
 from mpm_verify.cases.mms.external.answer import Levels, levels, read
 from mpm_verify.cases.mms.external.callables import Case, called
 from mpm_verify.cases.mms.external.command import PYTHON, filled
+from mpm_verify.cases.mms.external.components import reference
 from mpm_verify.cases.mms.external.errors import Found, compare
 from mpm_verify.cases.mms.external.hints import hints
 from mpm_verify.cases.mms.run import Result, Run
+from mpm_verify.mms.discretisation import dimension
 from mpm_verify.mms.export.case import Exported, Names, export
 from mpm_verify.mms.export.files import files
 from mpm_verify.mms.export.process import Ended
 from mpm_verify.mms.export.process import run as run_program
+from mpm_verify.mms.export.slice import sliced
 from mpm_verify.mms.export.start import named
+from mpm_verify.mms.manufacture import Manufactured, manufacture
 from mpm_verify.solver.failure import Failure, FailureKind, RunFailed
 from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS, create
 
@@ -67,13 +70,13 @@ def execute(run: Run, tick: Callable[[float], None] = lambda fraction: None) -> 
 
 def in_process(run: Run, case: Exported) -> Result:
     """Result of a Python function."""
-    exact, failure, found, told, why = manufactured(run.solution, run.material), None, Found({}, {}, {}), Levels(), {}
-    X, dt = np.stack([case.particles["X"], case.particles["Y"]], axis=-1), case.record.dt
+    exact, failure, found, told, why = exact_of(run), None, Found({}, {}, {}), Levels(), {}
+    X, dt = reference(case.particles, run.dim), case.record.dt
     started = time.perf_counter()
     try:
         start = named(run.start)
         force = start.force(exact.b, dt) if start else exact.b
-        frames, told = called(run.solver, Case(case.record, case.particles, force), X, case.record.dx / sqrt(run.ppc))
+        frames, told = called(run.solver, Case(case.record, case.particles, force), X, spacing(case))
         found, why = compare(exact, X, case.particles["V0"], dt, frames, told), hints(exact, X, dt, frames, told)
     except RunFailed as error:
         failure = error.failure
@@ -94,19 +97,33 @@ def check(ended: Ended, seconds: float, log: tuple[str, ...]) -> None:
 @cache
 def exported(run: Run) -> Exported:
     """Content of the case folder."""
-    solution, material = create(SOLUTIONS, run.solution), create(MATERIALS, run.material)
+    solution = sliced(create(SOLUTIONS, run.solution), run.dim, run.cells)
+    material = create(MATERIALS, run.material)
     names = Names(run.solution, run.material)
     return export(
         names, solution, material, run.cells, run.ppc, run.courant, FRAMES, checked=False, start=named(run.start)
     )
 
 
+@cache
+def exact_of(run: Run) -> Manufactured:
+    """Exact solution in as many dimensions as the case has."""
+    solution, material = create(SOLUTIONS, run.solution), create(MATERIALS, run.material)
+    if dimension(solution) == run.dim:
+        return manufactured(run.solution, run.material)
+    return manufacture(sliced(solution, run.dim, run.cells), material, material.rho0)
+
+
+def spacing(case: Exported) -> float:
+    """Distance of particles at reference, a length."""
+    return float(case.record.dx * case.record.ppc ** (-1 / case.record.dimension))
+
+
 def answered(run: Run, case: Exported, out: Path, told: Levels) -> tuple[Found, dict[str, float]]:
     """Errors of the frames, and hints. Raises RunFailed for an answer that is missing or cannot be read."""
-    X = np.stack([case.particles["X"], case.particles["Y"]], axis=-1)
-    spacing = case.record.dx / sqrt(run.ppc)
-    frames = {step: read(out, step, X, spacing) for step in case.record.frames}
-    exact, dt = manufactured(run.solution, run.material), case.record.dt
+    X = reference(case.particles, run.dim)
+    frames = {step: read(out, step, X, spacing(case)) for step in case.record.frames}
+    exact, dt = exact_of(run), case.record.dt
     return compare(exact, X, case.particles["V0"], dt, frames, told), hints(exact, X, dt, frames, told)
 
 

@@ -1,7 +1,7 @@
 """Hints on why an answer is wrong: readings of it that fit the exact fields far better than what it says."""
 
 from collections.abc import Callable
-from math import inf, sqrt
+from math import inf, isqrt, sqrt
 
 import numpy as np
 
@@ -16,10 +16,15 @@ LAGS = (-0.5, 0.0, 0.5, 1.0)  # steps that a field may be behind x
 
 Reading = Callable[[Floats], Floats]
 READINGS: dict[str, tuple[str, Reading]] = {  # name of a hint: the field, and what it may be instead
-    "F_transposed": ("F", lambda F: F[:, (0, 2, 1, 3)]),
-    "F_twice": ("F", lambda F: np.array([1.0, 0.0, 0.0, 1.0]) + 0.5 * (F - np.array([1.0, 0.0, 0.0, 1.0]))),
+    "F_transposed": ("F", lambda F: square(F).swapaxes(1, 2).reshape(F.shape)),
+    "F_twice": ("F", lambda F: (0.5 * (square(F) + np.eye(isqrt(F.shape[1])))).reshape(F.shape)),
     "sigma_sign": ("sigma", lambda sigma: -sigma),
 }
+
+
+def square(F: Floats) -> Floats:
+    """Matrices (P,d,d) of their components (P,d*d)."""
+    return F.reshape(len(F), isqrt(F.shape[1]), -1)
 
 
 def hints(exact: Manufactured, X: Floats, dt: float, frames: dict[int, Frame], levels: Levels) -> dict[str, float]:
@@ -30,7 +35,7 @@ def hints(exact: Manufactured, X: Floats, dt: float, frames: dict[int, Frame], l
     exact
         Exact fields.
     X
-        Reference positions (P,2).
+        Reference positions (P,d).
     dt
         Length of a time step.
     frames
