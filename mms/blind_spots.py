@@ -68,7 +68,7 @@ SEEN_BY = {  # solutions of the library that see what others are blind to
     BlindSpotCode.STRESS: ("axis_aligned", "clamped_shear"),
     BlindSpotCode.PLANE: ("axis_aligned", "clamped_shear"),
 }
-SEEN_BY_SOLID = {  # of three dimensions
+SEEN_BY_SOLID: dict[BlindSpotCode, tuple[str, ...]] = {  # of three dimensions
     code: ("swirl3d",) for code in SEEN_BY if code is not BlindSpotCode.WALLS
 }
 

@@ -14,12 +14,11 @@ from typing import Protocol
 
 import sympy as sp
 
+from mpm_verify.mms.components import AXES, COMPONENTS
 from mpm_verify.mms.energy import Energy, check_energy
 from mpm_verify.solver.state import Floats
 
 Expressions = list[sp.Expr]
-AXES = "xyz"
-STRESS = {2: ("xx", "yy", "zz", "xy"), 3: ("xx", "yy", "zz", "xy", "yz", "xz")}  # components by number of coordinates
 
 
 class Solution(Protocol):
@@ -35,7 +34,7 @@ class Solution(Protocol):
 
 @dataclass(frozen=True)
 class Fields:
-    """Expressions in X, Y and t, or X, Y, Z and t. F and P row by row: xx, xy, yx, yy; sigma as STRESS has it.
+    """Expressions in X, Y and t, or X, Y, Z and t. F and P row by row: xx, xy, yx, yy; sigma as COMPONENTS has it.
 
     P, sigma and b are written in the symbols of `inner`, which stand for components of F, of its gradient and of the
     acceleration; `full` puts those in.
@@ -90,7 +89,9 @@ def derive(solution: Solution, material: Energy, rho0: float, exact: bool = Fals
     Fzz = sp.Symbol("Fzz", real=True)
     whole = [[f[d * i + j] if max(i, j) < d else Fzz * int(i == j) for j in range(3)] for i in range(3)]
     W = number(material.energy(whole, sp.log))
-    P = [sp.diff(W, component).xreplace({Fzz: sp.Integer(1)} if d == 2 else {}) for component in (*f, *[Fzz] * (d == 2))]
+    P = [sp.diff(W, component) for component in f]
+    if d == 2:
+        P = [e.xreplace({Fzz: sp.Integer(1)}) for e in (*P, sp.diff(W, Fzz))]
     F = [sp.diff(u[k], X[L]) + int(k == L) for k in range(d) for L in range(d)]
 
     inner: dict[sp.Symbol, sp.Expr] = dict(zip(f, F, strict=True))
@@ -107,9 +108,9 @@ def derive(solution: Solution, material: Energy, rho0: float, exact: bool = Fals
 
 
 def cauchy(P: Expressions, f: Sequence[sp.Symbol], d: int) -> Expressions:
-    """Components of the Cauchy stress P F^T / det F, of P with P_zz last in plane strain, in the order of STRESS."""
+    """Components of P F^T / det F in the order of COMPONENTS; in plane strain P_zz is the last of P."""
     J = f[0] * f[3] - f[1] * f[2] if d == 2 else sp.Matrix(d, d, f).det()
-    rows = {end: [AXES.index(letter) for letter in end] for end in STRESS[d]}
+    rows = {end: [AXES.index(letter) for letter in end] for end in COMPONENTS[d]}
     return [
         P[4] / J if d == 2 and end == "zz" else sum(P[d * i + k] * f[d * j + k] for k in range(d)) / J
         for end, (i, j) in rows.items()

@@ -76,7 +76,7 @@ def per_side(ppc: int, dimension: int = 2) -> int:
 
     A cell has as many sides as the `dimension` says.
     """
-    side = round(max(ppc, 0) ** (1 / dimension))
+    side: int = round(max(ppc, 0) ** (1 / dimension))
     if side < 1 or side**dimension != ppc:
         power, choices = ("square", "1, 4, 9, 16") if dimension == 2 else ("cube", "1, 8, 27, 64")
         raise ValueError(f"{ppc} particles per cell is not a {power} number; choose {choices}, ...")

@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 import sympy as sp
 
+from fixtures_export import PLANE
+
 from mpm_verify.mms.exact import ROOM, ROWS
 from mpm_verify.mms.hoist import Hoist
 from mpm_verify.mms.manufacture import Field, Manufactured, manufacture
@@ -36,7 +38,7 @@ def parameters(name: str) -> list[str]:
 
 SOLUTIONS = [
     f"{name}:{extra}".rstrip(":")
-    for name in available("mpm_verify.mms.solutions")
+    for name in PLANE
     for extra in ("", *EXTRA.get(name, []))
 ]
 MATERIALS = ["neo_hookean", "neo_hookean:E=70,nu=0.45,rho0=3", "linear_elastic:E=200,nu=0.1,rho0=2"]

@@ -17,6 +17,7 @@ from mpm_verify.cases.mms.stability import check_time_steps
 from mpm_verify.mms.cells import fitting, ratio
 from mpm_verify.mms.discretisation import dimension
 from mpm_verify.mms.energy import check_energy
+from mpm_verify.solver.layout import per_side
 from mpm_verify.solver.plugins import (
     LAYOUTS,
     MATERIALS,
@@ -27,7 +28,6 @@ from mpm_verify.solver.plugins import (
     is_file,
     label,
 )
-from mpm_verify.solver.layout import per_side
 from mpm_verify.solver.plugins import canonical as canonical_name
 from mpm_verify.solver.stress_update import check_stress_update
 

@@ -6,11 +6,12 @@ from typing import Any
 
 import numpy as np
 
+from mpm_verify.mms.components import AXES, COMPONENTS
 from mpm_verify.mms.derive import derive
 from mpm_verify.mms.discretisation import dimension, grid_box, output_steps, time_steps, width
 from mpm_verify.mms.export.language import Heading
 from mpm_verify.mms.export.languages import LANGUAGES
-from mpm_verify.mms.export.program import AXES, COMPONENTS, Program, programs
+from mpm_verify.mms.export.program import Program, programs
 from mpm_verify.mms.export.record import FORMAT, CaseRecord, MaterialRecord
 from mpm_verify.mms.export.selfcheck import at_position, checked, rows
 from mpm_verify.mms.export.slice import Slice
@@ -113,9 +114,9 @@ def export(
         format=FORMAT, solution=label(names.solution), dimension=2 if d == 2 else 3,
         body="ring" if hasattr(plane(solution), "inner") else "rectangle" if d == 2 else "box",
         lower=numbers(solution.lower), upper=numbers(solution.upper),
-        grid_lower=numbers(lower), grid_upper=numbers(upper), cells=cells, dx=dx, ppc=ppc * max(1, layers), particles=len(layout),
-        edges=edges(solution), duration=float(solution.duration), steps=steps, dt=dt, courant=courant,
-        frames=output_steps(steps, frames), t_half=-dt / 2, t_before=-dt,
+        grid_lower=numbers(lower), grid_upper=numbers(upper), cells=cells, dx=dx, ppc=ppc * max(1, layers),
+        particles=len(layout), edges=edges(solution), duration=float(solution.duration), steps=steps, dt=dt,
+        courant=courant, frames=output_steps(steps, frames), t_half=-dt / 2, t_before=-dt,
         material=MaterialRecord(label(names.material), constants(material), getattr(material, "formula", "")),
         languages={name: tuple(files) for name, files in sources.items()}, layers=layers,
     )  # fmt: skip
@@ -185,9 +186,7 @@ def positions(values: Floats, first: str = "X") -> Columns:
     return {letters[k]: values[:, k] for k in range(values.shape[1])}
 
 
-def selfcheck(
-    code: Sequence[Program], solution: Any, material: Any, layout: Layout
-) -> tuple[Columns, Columns]:
+def selfcheck(code: Sequence[Program], solution: Any, material: Any, layout: Layout) -> tuple[Columns, Columns]:
     """Columns (R,) of the force at some rows, and of the fields there, with the tolerance of each value."""
     exact, known = derive(solution, material, material.rho0, exact=True), {program.name: program for program in code}
     X, times = rows(layout, float(solution.duration))

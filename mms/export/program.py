@@ -5,10 +5,8 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from mpm_verify.mms.derive import AXES, STRESS, Fields
+from mpm_verify.mms.derive import Fields
 from mpm_verify.mms.straight_line import assignments, factors, whole_numbers
-
-COMPONENTS = STRESS
 
 
 @dataclass(frozen=True)

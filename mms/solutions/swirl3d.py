@@ -73,7 +73,8 @@ class Swirl3d(Cube):
         w_t = sp.pi * self.exact(self.C) * t / L
         half_way, beside = L / 4 * (1 - sp.cos(w_t)), L / 2 * self.B * sp.sin(w_t)
         K = sp.Matrix([[0, -2, 2], [2, 0, -1], [-2, 1, 0]]) / 3
-        M = (sin(self.A) * K + (1 - cos(self.A)) * K * K) * half_way + sp.diag(1, -sp.S.Half, sp.Rational(3, 4)) * beside
+        shape = sp.diag(1, -sp.S.Half, sp.Rational(3, 4))
+        M = (sin(self.A) * K + (1 - cos(self.A)) * K * K) * half_way + shape * beside
         x, y, z = (2 * coordinate / L - 1 for coordinate in X)
         around = sp.Matrix([odd(x) * even(y) * even(z), even(x) * odd(y) * even(z), even(x) * even(y) * odd(z)])
         return M * around

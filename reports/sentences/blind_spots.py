@@ -90,7 +90,7 @@ def no_plane(n: Numbers) -> str:
     """Sentence on the component that is missing."""
     still = "one component of u" if n["weaker_component"] <= FAINT else "one component of the gradient"
     if solid(n):
-        return f"The problem is not one of three dimensions: {still} is all but zero, so part of the code is not tested."
+        return f"Not all three dimensions take part: {still} is all but zero, so part of the code is not tested."
     return f"The problem is one-dimensional: {still} is all but zero, so half of the code is not tested."
 
 
@@ -165,8 +165,7 @@ SEEN: dict[BlindSpotCode, Words] = {
         f"The body starts {begins(n['start_velocity'], 'velocity')}, so wrong initial velocities show."
     ),
     BlindSpotCode.MIRROR: lambda n: (
-        f"The motion is not the same in {'any two of x, y and z' if solid(n) else 'x and y'}, so axes that are exchanged "
-        "show."
+        f"The motion is not the same in x and y{', nor in z' * solid(n)}, so axes that are exchanged show."
     ),
     BlindSpotCode.AMPLITUDE: lambda n: f"{amplitude(n)}.",
     BlindSpotCode.CROSSING: lambda n: (

@@ -14,14 +14,14 @@ from typing import Any
 import numpy as np
 
 from mpm_verify.cases.mms.external.components import NAMES, QUANTITIES, UPPER
-from mpm_verify.mms.derive import AXES
+from mpm_verify.cases.mms.external.precision import single
+from mpm_verify.mms.components import AXES
 from mpm_verify.solver.failure import FailureKind, RunFailed
 from mpm_verify.solver.state import Floats
 
 ENDINGS = ("csv", "tsv", "txt", "npz", "vtu")
 NEAR = 1e-3  # spacings: how far a reference position may be from that of its particle
 LEVELS = {"v_lag": 0.5, "F_lag": 0.0}  # steps that v and F with sigma are behind x, where result.json does not say
-FEW = 8  # different numbers, which may be of single precision by accident
 SAMPLE = 200  # numbers that the digits of a file are told from
 
 
@@ -233,18 +233,6 @@ def rounding(columns: dict[str, Any]) -> dict[str, float]:
             size = np.sqrt(np.mean(np.square(values, dtype=np.float64)))
             found[name] = float(np.finfo(values.dtype).eps * size / np.sqrt(12.0))
     return found
-
-
-def single(values: Floats) -> float:
-    """Standard deviation of the rounding of a field (P,n) whose numbers are all of single precision, however printed.
-
-    Zero for any other: more than a few have to differ, since zeros, ones and halves are of single precision too.
-    """
-    with np.errstate(over="ignore"):
-        short = values.astype(np.float32)
-    if not (short == values).all() or len(np.unique(short)) <= FEW:
-        return 0.0
-    return float(np.finfo(np.float32).eps * np.sqrt(np.mean(np.square(values)) * values.shape[1] / 12))
 
 
 def some(values: Any) -> list[tuple[Decimal, bool]]:

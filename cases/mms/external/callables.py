@@ -12,7 +12,7 @@ import numpy as np
 from mpm_verify.cases.mms.external.answer import Frame, Levels, framed, spread, stated
 from mpm_verify.cases.mms.external.command import PYTHON
 from mpm_verify.cases.mms.external.components import QUANTITIES
-from mpm_verify.mms.derive import AXES
+from mpm_verify.mms.components import AXES
 from mpm_verify.mms.export.record import CaseRecord
 from mpm_verify.solver.failure import FailureKind, RunFailed
 from mpm_verify.solver.own_file import shortened

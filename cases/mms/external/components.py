@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from mpm_verify.mms.derive import AXES, STRESS
+from mpm_verify.mms.components import AXES, COMPONENTS
 from mpm_verify.solver.state import Floats
 
 
@@ -13,7 +13,7 @@ def quantities(dimension: int) -> dict[str, tuple[str, ...]]:
         "x": tuple(axes),
         "v": tuple(f"v{a}" for a in axes),
         "F": tuple(f"F{a}{b}" for a in axes for b in axes),
-        "sigma": tuple(f"s{end}" for end in STRESS[dimension]),
+        "sigma": tuple(f"s{end}" for end in COMPONENTS[dimension]),
     }
 
 
@@ -23,7 +23,7 @@ NAMES = {  # of an array with all components, by its name and their number
     for dimension in (2, 3)
     for name, parts in {**QUANTITIES[dimension], "X": tuple(AXES[:dimension].upper())}.items()
 }
-UPPER = (0, 4, 8, 1, 5, 2)  # components of a symmetric tensor with nine, in the order of STRESS
+UPPER = (0, 4, 8, 1, 5, 2)  # components of a symmetric tensor with nine, in the order of COMPONENTS
 WEIGHTS = {4: np.array([1.0, 1.0, 1.0, 2.0]), 6: np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])}  # of a sum of squares
 
 
