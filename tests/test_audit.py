@@ -112,9 +112,10 @@ def test_sentences_have_the_numbers() -> None:
     assert "with 1 % of" in {s.code: sentence(s) for s in case("axis_aligned:phase=0.01").audit.spots}["start"]
 
 
-@pytest.mark.parametrize(("key", "text"), [
-    (key, text) for table in (SEEN_BY, SEEN_BY_SOLID) for key, texts in table.items() for text in texts
-])
+@pytest.mark.parametrize(
+    ("key", "text"),
+    [(key, text) for table in (SEEN_BY, SEEN_BY_SOLID) for key, texts in table.items() for text in texts],
+)
 def test_who_is_said_to_see_it_does(key: str, text: str) -> None:
     assert key not in case(text).blind
 

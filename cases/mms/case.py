@@ -55,7 +55,7 @@ def canonical(values: dict[str, Any]) -> dict[str, Any]:
     """Specifications with only the parameters that differ from their defaults, and the solution's own material."""
     solution = values["solution"] = canonical_name(SOLUTIONS, values.get("solution", Run.solution))
     own = dimension(create(SOLUTIONS, solution))
-    if values.setdefault("dim", own) < own:
+    if values.setdefault("dim", own) == 2 != own:
         raise ValueError(f"{label(solution)} has three dimensions, dim = {values['dim']} cannot be; leave it out")
     values["material"] = canonical_name(MATERIALS, values.get("material") or create(SOLUTIONS, solution).material)
     values["transfer"] = canonical_name(TRANSFERS, values.get("transfer", Run.transfer))
