@@ -214,9 +214,8 @@ def by_the_book(case: Case) -> Any:
     return found, {"version": "1"}
 
 
-@pytest.mark.parametrize(
-    ("solution", "more"), [("bump3d:A=0.05", {}), ("clamped_shear", {"dim": 3, "cells": [4, 6, 8, 12]})]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize(("solution", "more"), [("bump3d:A=0.05", {}), ("clamped_shear", {"dim": 3})])
 def test_a_function_is_judged(tmp_path: Path, solution: str, more: dict[str, Any]) -> None:
     axes = {"cells": [4, 6, 8, 12], "courant": [0.4, 0.2], "order": 2.0, "solution": solution, **more}
     done = mv.study("mms", solver=by_the_book, out=tmp_path / "study", **axes)
