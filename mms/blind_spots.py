@@ -15,7 +15,7 @@ WEAK = 0.05  # fraction of the force or the acceleration that matters most
 SMALL = 1e-3  # strain below which second order in the strain is not seen in the error of a usual grid
 TURNED, CLEAR = 1.0, 15.0  # degrees: below the first nothing is seen, from the second on it is not weak
 ROUND = 1e-9  # fraction of the largest value: above round-off
-FINEST = 128  # cells of the finest usual grid
+FINEST, SOLID_FINEST = 128, 16  # cells of the finest usual grid, and of that in three dimensions
 QUARTER = 0.25  # cells: of 4 particles in a cell, each is a quarter of a cell from its face
 
 
@@ -68,6 +68,9 @@ SEEN_BY = {  # solutions of the library that see what others are blind to
     BlindSpotCode.STRESS: ("axis_aligned", "clamped_shear"),
     BlindSpotCode.PLANE: ("axis_aligned", "clamped_shear"),
 }
+SEEN_BY_SOLID: dict[BlindSpotCode, tuple[str, ...]] = {  # of three dimensions
+    code: ("swirl3d",) for code in SEEN_BY if code is not BlindSpotCode.WALLS
+}
 
 
 def volume_kept(n: Numbers) -> bool:
@@ -107,8 +110,10 @@ RULES: dict[BlindSpotCode, tuple[Callable[[Numbers], bool], tuple[str, ...]]] = 
 
 def judge(measured: Numbers) -> tuple[BlindSpot, ...]:
     """One BlindSpot for each rule, in the order of the rules, and what holds for every solution last."""
-    known = {**measured, "finest": float(FINEST)}
+    solid = "dimension" in measured  # only that of three dimensions is told
+    known = {**measured, "finest": float(SOLID_FINEST if solid else FINEST)}
     rules = (
-        BlindSpot(code, blind(known), {name: known[name] for name in names}) for code, (blind, names) in RULES.items()
+        BlindSpot(code, blind(known), {name: known[name] for name in (*names, *["dimension"] * solid)})
+        for code, (blind, names) in RULES.items()
     )
     return (*rules, *ALWAYS)

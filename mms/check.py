@@ -6,6 +6,7 @@ import numpy as np
 import sympy as sp
 
 from mpm_verify.mms.cells import check_cells
+from mpm_verify.mms.discretisation import dimension
 from mpm_verify.mms.edges import examine
 from mpm_verify.mms.manufacture import manufacture
 from mpm_verify.mms.measure import Sampler, WaveMaterial, filled, largest
@@ -41,6 +42,8 @@ def check(solution: Any, material: WaveMaterial, cells: tuple[int, ...] = ()) ->
         One line that says what is wrong, and where and when.
     """
     name = str(getattr(solution, "path", type(solution).__name__))
+    if dimension(solution) != 2:
+        raise ValueError(f"{name}: a solution of your own has two dimensions; lower and upper are two numbers each")
     check_cells(name, solution, cells)
     smooth(name, solution)
     exact = manufacture(solution, material, material.rho0)  # type: ignore[arg-type]

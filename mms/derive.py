@@ -3,7 +3,8 @@
     F = I + du/dX,  P = dW/dF,  sigma = P F^T / det F,  b = d2u/dt2 - Div P / rho0,
     Div P_i = sum over J, k, L of d2W/dF_iJ dF_kL * d2u_k/dX_L dX_J
 
-The energy is differentiated once, by the components of F as symbols; nothing is simplified (it does not end on these).
+A solution of two coordinates is in plane strain: F_zz = 1, and no other component of F in z. The energy is
+differentiated once, by the components of F as symbols; nothing is simplified (it does not end on these).
 """
 
 from collections.abc import Sequence
@@ -13,7 +14,9 @@ from typing import Protocol
 
 import sympy as sp
 
+from mpm_verify.mms.components import AXES, COMPONENTS
 from mpm_verify.mms.energy import Energy, check_energy
+from mpm_verify.solver.state import Floats
 
 Expressions = list[sp.Expr]
 
@@ -21,19 +24,23 @@ Expressions = list[sp.Expr]
 class Solution(Protocol):
     """A displacement field as a plug-in of mms/solutions; the problem statement is its docstring."""
 
+    @property
+    def lower(self) -> Floats:
+        """Lower corner of the body's box, (d,), with as many coordinates as the solution has."""
+
     def displacement(self, X: Sequence[sp.Symbol], t: sp.Symbol) -> sp.Matrix:
-        """Displacement u (2,) of the reference position X = (X, Y) and the time t."""
+        """Displacement u (d,) of the reference position X = (X, Y) or (X, Y, Z) and the time t."""
 
 
 @dataclass(frozen=True)
 class Fields:
-    """Expressions in X, Y and t. Components in the order of the solver: F and P xx, xy, yx, yy; sigma xx, yy, zz, xy.
+    """Expressions in X, Y and t, or X, Y, Z and t. F and P row by row: xx, xy, yx, yy; sigma as COMPONENTS has it.
 
     P, sigma and b are written in the symbols of `inner`, which stand for components of F, of its gradient and of the
     acceleration; `full` puts those in.
     """
 
-    X: tuple[sp.Symbol, sp.Symbol]
+    X: tuple[sp.Symbol, ...]
     t: sp.Symbol
     u: Expressions
     v: Expressions
@@ -44,7 +51,7 @@ class Fields:
     inner: dict[sp.Symbol, sp.Expr]
 
     def full(self, expressions: Expressions) -> Expressions:
-        """Write expressions in X, Y and t alone."""
+        """Write expressions in coordinates and t alone."""
         return [sp.sympify(e).xreplace(self.inner) for e in expressions]
 
 
@@ -66,7 +73,7 @@ def derive(solution: Solution, material: Energy, rho0: float, exact: bool = Fals
     Returns
     -------
     Fields
-        Expressions in X, Y and t.
+        Expressions in coordinates and t.
 
     Raises
     ------
@@ -74,32 +81,40 @@ def derive(solution: Solution, material: Energy, rho0: float, exact: bool = Fals
         For a material without an energy.
     """
     check_energy(material)
-    X, t = sp.symbols("X Y", real=True), sp.Symbol("t", real=True)
+    d = len(solution.lower)
+    X, t = sp.symbols(" ".join(AXES[:d].upper()), real=True), sp.Symbol("t", real=True)
     number = fractions if exact else sp.sympify
     u = [number(component) for component in solution.displacement(X, t)]
-    f = sp.symbols("Fxx Fxy Fyx Fyy", real=True)
+    f = sp.symbols([f"F{a}{b}" for a in AXES[:d] for b in AXES[:d]], real=True)
     Fzz = sp.Symbol("Fzz", real=True)
-    W = number(material.energy([[f[0], f[1], 0], [f[2], f[3], 0], [0, 0, Fzz]], sp.log))
-    P = [sp.diff(W, component).xreplace({Fzz: sp.Integer(1)}) for component in (*f, Fzz)]
-    F = [sp.diff(u[k], X[L]) + int(k == L) for k in (0, 1) for L in (0, 1)]
+    whole = [[f[d * i + j] if max(i, j) < d else Fzz * int(i == j) for j in range(3)] for i in range(3)]
+    W = number(material.energy(whole, sp.log))
+    P = [sp.diff(W, component) for component in f]
+    if d == 2:
+        P = [e.xreplace({Fzz: sp.Integer(1)}) for e in (*P, sp.diff(W, Fzz))]
+    F = [sp.diff(u[k], X[L]) + int(k == L) for k in range(d) for L in range(d)]
 
     inner: dict[sp.Symbol, sp.Expr] = dict(zip(f, F, strict=True))
-    divergence = [sp.Integer(0), sp.Integer(0)]
-    for i, J, q in product((0, 1), (0, 1), range(4)):  # q runs over the components kL of F
+    divergence = [sp.Integer(0)] * d
+    for i, J, q in product(range(d), range(d), range(d * d)):  # q runs over the components kL of F
         second = inner_symbol(inner, sp.diff(F[q], X[J]), f"d{f[q]}_d{X[J]}")
-        divergence[i] += sp.diff(P[2 * i + J], f[q]) * second
-    b = [inner_symbol(inner, sp.diff(u[i], t, 2), f"a{X[i]}") - divergence[i] / number(rho0) for i in (0, 1)]
+        divergence[i] += sp.diff(P[d * i + J], f[q]) * second
+    b = [inner_symbol(inner, sp.diff(u[i], t, 2), f"a{X[i]}") - divergence[i] / number(rho0) for i in range(d)]
 
-    J = f[0] * f[3] - f[1] * f[2]
-    sigma = [
-        (P[0] * f[0] + P[1] * f[1]) / J,
-        (P[2] * f[2] + P[3] * f[3]) / J,
-        P[4] / J,
-        (P[0] * f[2] + P[1] * f[3]) / J,
-    ]
+    sigma = cauchy(P, f, d)
     zeros = {symbol: e for symbol, e in inner.items() if e.is_number}  # a diagonal F makes most terms vanish
-    P, sigma, b = ([sp.sympify(e).xreplace(zeros) for e in group] for group in (P[:4], sigma, b))
+    P, sigma, b = ([sp.sympify(e).xreplace(zeros) for e in group] for group in (P[: d * d], sigma, b))
     return Fields(X, t, u, [sp.diff(e, t) for e in u], F, P, sigma, b, inner)
+
+
+def cauchy(P: Expressions, f: Sequence[sp.Symbol], d: int) -> Expressions:
+    """Components of P F^T / det F in the order of COMPONENTS; in plane strain P_zz is the last of P."""
+    J = f[0] * f[3] - f[1] * f[2] if d == 2 else sp.Matrix(d, d, f).det()
+    rows = {end: [AXES.index(letter) for letter in end] for end in COMPONENTS[d]}
+    return [
+        P[4] / J if d == 2 and end == "zz" else sum(P[d * i + k] * f[d * j + k] for k in range(d)) / J
+        for end, (i, j) in rows.items()
+    ]
 
 
 def fractions(expression: sp.Expr) -> sp.Expr:

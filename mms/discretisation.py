@@ -8,6 +8,11 @@ import numpy as np
 from mpm_verify.solver.state import Floats
 
 
+def dimension(solution: Any) -> int:
+    """Number of coordinates of a solution: 2, plane strain, or 3."""
+    return len(solution.lower)
+
+
 def width(solution: Any) -> float:
     """Extent of the body's box along x, a length: the one that cells are counted along."""
     return float(solution.upper[0] - solution.lower[0])

@@ -21,7 +21,11 @@ def exact(c, s, n, out):
 
 
 def write(fields: Fields) -> list[str]:
-    """Sources of the kernel, of its columns and of its scalars: hoist, find common subexpressions, print."""
+    """Sources of the kernel, of its columns and of its scalars: hoist, find common subexpressions, print.
+
+    Of two coordinates, as the reference solver has them.
+    """
+    assert len(fields.X) == 2
     tv = sp.Symbol("t_velocity", real=True)
     hoist = Hoist(fields.X, (fields.t, tv))
     inner = {symbol: hoist(e) for symbol, e in fields.inner.items()}

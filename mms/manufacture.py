@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mpm_verify.mms.discretisation import dimension
 from mpm_verify.mms.energy import Energy, check_energy
 from mpm_verify.mms.printed import folder, function, printed
 from mpm_verify.solver.cache_folder import kept
@@ -22,7 +23,7 @@ Field = Callable[[Floats, float], Floats]
 
 @dataclass(frozen=True)
 class Manufactured:
-    """Exact fields as functions of (X, t): reference positions X (P,2), t a number.
+    """Exact fields as functions of (X, t): reference positions X (P,d), t a number; d = 2 is plane strain, or 3.
 
     Parameters
     ----------
@@ -45,42 +46,42 @@ class Manufactured:
         return derive(self.solution, self.material, self.rho0)
 
     def x(self, X: Floats, t: float) -> Floats:
-        """Position x (P,2), a length."""
+        """Position x (P,d), a length."""
         return X + self.u(X, t)
 
     @cached_property
     def u(self) -> Field:
-        """Displacement u (P,2), a length."""
-        return self._function("u", (2,))
+        """Displacement u (P,d), a length."""
+        return self._function("u", 1)
 
     @cached_property
     def v(self) -> Field:
-        """Velocity v (P,2), length per time."""
-        return self._function("v", (2,))
+        """Velocity v (P,d), length per time."""
+        return self._function("v", 1)
 
     @cached_property
     def F(self) -> Field:
-        """Deformation gradient F (P,2,2), rows the components of the position."""
-        return self._function("F", (2, 2))
+        """Deformation gradient F (P,d,d), rows the components of the position."""
+        return self._function("F", 2)
 
     @cached_property
     def P(self) -> Field:
-        """First Piola stress P (P,2,2), rows the components of the traction."""
-        return self._function("P", (2, 2))
+        """First Piola stress P (P,d,d), rows the components of the traction."""
+        return self._function("P", 2)
 
     @cached_property
     def sigma(self) -> Field:
-        """Cauchy stress sigma (P,4): xx, yy, zz, xy, tension positive."""
-        return self._function("sigma", (4,))
+        """Cauchy stress sigma (P,4): xx, yy, zz, xy, tension positive; or (P,6), with yz and xz last."""
+        return self._function("sigma", 0)
 
     @cached_property
     def b(self) -> Field:
-        """Body force per mass b (P,2), length per time squared."""
-        return self._function("b", (2,))
+        """Body force per mass b (P,d), length per time squared."""
+        return self._function("b", 1)
 
     @cached_property
     def kernel(self) -> "ExactKernel":
-        """Fields as one compiled kernel for blocks of particles."""
+        """Fields of two coordinates as one compiled kernel for blocks of particles."""
         from mpm_verify.mms.exact import compiled
 
         return compiled(*json.loads(self.text("kernel", self._kernel_source)))
@@ -94,15 +95,20 @@ class Manufactured:
 
         return json.dumps(write(self.fields))
 
-    def _function(self, name: str, shape: tuple[int, ...]) -> Field:
+    def _function(self, name: str, rank: int) -> Field:
+        """Function that a field is printed as, of vectors and tensors of a rank, or of 0: as they are listed."""
+        shape = (dimension(self.solution),) * rank or (-1,)
+
         def source() -> str:
             f = self.fields
+            if len(f.X) == 3:  # in coordinates alone its expressions are so long that b takes ten seconds
+                return printed((*f.X, f.t), getattr(f, name), f.inner)
             return printed((*f.X, f.t), f.full(getattr(f, name)))
 
         compiled = function(self.text(name, source))
 
         def evaluate(X: Floats, t: float) -> Floats:
-            values = [np.broadcast_to(value, len(X)) for value in compiled(X[:, 0], X[:, 1], t)]
+            values = [np.broadcast_to(value, len(X)) for value in compiled(*X.T, t)]
             return np.stack(values, axis=-1).astype(np.float64).reshape(len(X), *shape)
 
         return evaluate

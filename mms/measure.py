@@ -5,6 +5,7 @@ their values, so no expression is put into another and all of it takes a tenth o
 """
 
 from dataclasses import dataclass
+from itertools import combinations, permutations, product
 from typing import Any, Protocol
 
 import numpy as np
@@ -16,6 +17,7 @@ from mpm_verify.solver.state import Floats
 
 TIMES = 33  # even steps hit the extremes of a wave whose period divides the duration
 CELLS = 16  # on the width of the body, four positions in each
+SOLID_CELLS = 8  # of a body in three dimensions, eight positions in each
 SHARP = 0.8  # cosine of half the angle between two faces: at the corners of a rectangle there is no one normal
 
 
@@ -30,9 +32,9 @@ class WaveMaterial(Protocol):
 
 @dataclass(frozen=True)
 class Sample:
-    """Fields at T times and P reference positions: u, v, acceleration, b (T,P,2); F, P (T,P,2,2); sigma (T,P,4).
+    """Fields at T times and P reference positions: u, v, acceleration, b (T,P,d); F, P (T,P,d,d); sigma (T,P,4 or 6).
 
-    `slope` (T,P,8) are the derivatives of F by X and Y.
+    `slope` (T,P,d^3) are the derivatives of F by the coordinates.
     """
 
     u: Floats
@@ -47,8 +49,21 @@ class Sample:
     @property
     def J(self) -> Floats:
         """Determinant of F, (T,P)."""
+        if self.u.shape[-1] == 3:
+            return np.linalg.det(self.F)
         J: Floats = self.F[..., 0, 0] * self.F[..., 1, 1] - self.F[..., 0, 1] * self.F[..., 1, 0]
         return J
+
+    @property
+    def turned(self) -> Floats:
+        """Angle of the rotation R of F = R U, radians, (T,P)."""
+        F = self.F
+        if self.u.shape[-1] == 2:
+            return np.arctan2(F[..., 1, 0] - F[..., 0, 1], F[..., 0, 0] + F[..., 1, 1])
+        left, _, right = np.linalg.svd(F)
+        R = left @ right
+        axial = np.stack([R[..., (k + 2) % 3, (k + 1) % 3] - R[..., (k + 1) % 3, (k + 2) % 3] for k in range(3)])
+        return np.arctan2(np.linalg.norm(axial, axis=0), np.trace(R, axis1=-2, axis2=-1) - 1)
 
 
 class Sampler:
@@ -62,21 +77,21 @@ class Sampler:
         self.last: Any = sp.lambdify(inner, [*f.P, *f.sigma, *f.b], "numpy", cse=True)
 
     def __call__(self, X: Floats, times: Floats) -> Sample:
-        """Fields at all reference positions (P,2) at all times (T,); what has no value there is NaN or infinite."""
-        shape = (len(times), len(X))
+        """Fields at all reference positions (P,d) at all times (T,); what has no value there is NaN or infinite."""
+        shape, d = (len(times), len(X)), X.shape[1]
         with np.errstate(all="ignore"):
-            first = filled(self.first(X[:, 0], X[:, 1], times[:, None]), shape)
-            last = filled(self.last(*np.moveaxis(first[..., 4:], -1, 0)), shape)
-        u, v, F, slope, acceleration = np.split(first, (2, 4, 8, 16), axis=-1)
-        P, sigma, b = np.split(last, (4, 8), axis=-1)
-        return Sample(u, v, F.reshape(*shape, 2, 2), slope, acceleration, P.reshape(*shape, 2, 2), sigma, b)
+            first = filled(self.first(*X.T, times[:, None]), shape)
+            last = filled(self.last(*np.moveaxis(first[..., 2 * d :], -1, 0)), shape)
+        u, v, F, slope, acceleration = np.split(first, np.cumsum([d, d, d**2, d**3]), axis=-1)
+        P, sigma, b = np.split(last, (d**2, last.shape[-1] - d), axis=-1)
+        return Sample(u, v, F.reshape(*shape, d, d), slope, acceleration, P.reshape(*shape, d, d), sigma, b)
 
     def rate(self, X: Floats, times: Floats) -> Floats:
-        """Rate dF/dt (T,P,2,2) by a central difference, to 1e-6: expressions would double what there is to compile."""
+        """Rate dF/dt (T,P,d,d) by a central difference, to 1e-6: expressions would double what there is to compile."""
         h = 1e-4 * float(np.ptp(times))
-        shape = (len(times), len(X))
-        ahead, behind = (filled(self.F(X[:, 0], X[:, 1], times[:, None] + s), shape) for s in (h, -h))
-        rate: Floats = ((ahead - behind) / (2 * h)).reshape(*shape, 2, 2)
+        shape, d = (len(times), len(X)), X.shape[1]
+        ahead, behind = (filled(self.F(*X.T, times[:, None] + s), shape) for s in (h, -h))
+        rate: Floats = ((ahead - behind) / (2 * h)).reshape(*shape, d, d)
         return rate
 
 
@@ -88,8 +103,11 @@ def filled(values: Any, shape: tuple[int, ...]) -> Floats:
 def boundary(layout: Layout) -> tuple[Floats, Floats]:
     """Corners of domains on the edge of the body, with unit normals outwards, both (B,2); sharp corners are left out.
 
-    A face of one domain alone is on the edge. The normal at a corner is the mean of those of its two faces.
+    A face of one domain alone is on the edge. The normal at a corner is the mean of those of its two faces. Of a block
+    the middles of the domains' faces, and its normals, (B,3).
     """
+    if layout.X.shape[1] == 3:
+        return faces_of_a_block(layout)
     X, start = shared_corners(layout)
     faces = np.stack([start, np.roll(start, -1, axis=1)], axis=-1).reshape(-1, 2)
     _, which, times = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
@@ -103,19 +121,30 @@ def boundary(layout: Layout) -> tuple[Floats, Floats]:
     return X[smooth], total[smooth] / length[smooth, None]
 
 
+def faces_of_a_block(layout: Layout) -> tuple[Floats, Floats]:
+    """Middles of the faces of domains on the six faces of a block, with unit normals outwards, (B,3) each."""
+    found = []
+    for axis, way in product(range(3), (-1, 1)):
+        X = layout.X + way * layout.r0[:, axis]
+        outermost = X[:, axis] == way * (way * X[:, axis]).max()
+        found.append((X[outermost], np.tile(way * np.eye(3)[axis], (int(outermost.sum()), 1))))
+    X, normal = (np.concatenate(parts) for parts in zip(*found, strict=True))
+    return X, normal
+
+
 def measure(exact: Manufactured, solution: Any, material: WaveMaterial) -> dict[str, float]:
     """Measure a solution: numbers without units, lengths relative to the body's extent in x, as cells are."""
     extent = solution.upper - solution.lower
     width, times = float(extent[0]), np.linspace(0.0, solution.duration, TIMES)
-    layout, sampler = solution.layout(width / CELLS, 4), Sampler(exact)
+    d, sampler = len(extent), Sampler(exact)
+    layout = solution.layout(width / (CELLS if d == 2 else SOLID_CELLS), 2**d)
     s = sampler(layout.X, times)
-    shift, L = s.F - np.eye(2), sampler.rate(layout.X, times) @ np.linalg.inv(s.F)
-    turned = np.arctan2(s.F[..., 1, 0] - s.F[..., 0, 1], s.F[..., 0, 0] + s.F[..., 1, 1])
+    shift, L = s.F - np.eye(d), sampler.rate(layout.X, times) @ np.linalg.inv(s.F)
     inertia, load = largest(s.acceleration), largest(s.b)
     numbers = {
         "strain": largest(shift),  # largest component of F - I
-        "shear": max(largest(s.F[..., 0, 1]), largest(s.F[..., 1, 0])),
-        "rotation_deg": float(np.degrees(np.abs(turned).max())),  # angle of R in F = R U
+        "shear": max(largest(s.F[..., i, j]) for i, j in permutations(range(d), 2)),
+        "rotation_deg": float(np.degrees(np.abs(s.turned).max())),  # angle of R in F = R U
         "spin": ratio(largest(L - L.swapaxes(-1, -2)), largest(L)),  # skew part of the velocity gradient
         "order": ratio(largest(s.F @ L - L @ s.F), largest(L)),  # whether F and L commute
         "J_min": float(s.J.min()),
@@ -127,15 +156,28 @@ def measure(exact: Manufactured, solution: Any, material: WaveMaterial) -> dict[
         "load": ratio(load, inertia),
         "stress_force": ratio(largest(s.acceleration - s.b), max(inertia, load)),  # Div P / rho0
         "stress": largest(s.sigma) / (material.rho0 * material.wave_speed() ** 2),
-        "weaker_component": ratio(min(largest(s.u[..., 0]), largest(s.u[..., 1])), largest(s.u)),
-        "weaker_direction": ratio(min(largest(shift[..., :, 0]), largest(shift[..., :, 1])), largest(shift)),
-        "mirror": 1.0,  # distance of u from its mirror image in the diagonal
+        "weaker_component": ratio(min(largest(s.u[..., k]) for k in range(d)), largest(s.u)),
+        "weaker_direction": ratio(min(largest(shift[..., :, k]) for k in range(d)), largest(shift)),
+        "mirror": mirror(s.u, sampler, solution, layout, times),
     }
-    if np.isclose(*extent):
-        image = sampler(solution.lower + (layout.X - solution.lower)[:, ::-1], times).u[..., ::-1]
-        numbers["mirror"] = ratio(largest(image - s.u), largest(s.u))
     free = float(solution.boundary == "free")
-    return {**numbers, **at_the_edge(s, sampler, layout, times, least_stress(material)), "edge_free": free}
+    numbers |= {**at_the_edge(s, sampler, layout, times, least_stress(material)), "edge_free": free}
+    return numbers if d == 2 else {**numbers, "dimension": float(d)}
+
+
+def mirror(u: Floats, sampler: Sampler, solution: Any, layout: Layout, times: Floats) -> float:
+    """Distance of u (T,P,d) from its mirror image in a diagonal, where two axes are exchanged: that of the nearest.
+
+    As a fraction of the largest; 1 where no two sides are of the same length.
+    """
+    extent, found = solution.upper - solution.lower, []
+    for i, j in combinations(range(len(extent)), 2):
+        if np.isclose(extent[i], extent[j]):
+            axes = list(range(len(extent)))
+            axes[i], axes[j] = j, i
+            image = sampler(solution.lower + (layout.X - solution.lower)[:, axes], times).u[..., axes]
+            found.append(ratio(largest(image - u), largest(u)))
+    return min(found, default=1.0)
 
 
 def least_stress(material: WaveMaterial) -> float:

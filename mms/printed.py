@@ -5,7 +5,7 @@ What is kept stands in the folder of the kernel cache, below the hash of what it
 
 import hashlib
 import inspect
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
@@ -18,11 +18,24 @@ if TYPE_CHECKING:
     import sympy as sp
 
 
-def printed(symbols: Sequence["sp.Symbol"], expressions: Sequence["sp.Expr"]) -> str:
-    """Source of a function of the symbols that gives a list of values, common subexpressions first."""
+def printed(
+    symbols: Sequence["sp.Symbol"],
+    expressions: Sequence["sp.Expr"],
+    inner: "Mapping[sp.Symbol, sp.Expr] | None" = None,
+) -> str:
+    """Source of a function of the symbols that gives a list of values, common subexpressions first.
+
+    `inner` has expressions of symbols that the others are written in, which are computed before them.
+    """
     import sympy as sp
 
-    return inspect.getsource(sp.lambdify(symbols, list(expressions), "numpy", cse=True))
+    from mpm_verify.mms.straight_line import assignments
+
+    def ordered(targets: Sequence["sp.Expr"]) -> tuple[list[Any], list["sp.Expr"]]:
+        order = assignments(inner or {}, list(enumerate(targets)))
+        return order[: -len(targets)], [e for _, e in order[-len(targets) :]]
+
+    return inspect.getsource(sp.lambdify(symbols, list(expressions), "numpy", cse=ordered if inner else True))
 
 
 def function(source: str) -> Callable[..., Any]:

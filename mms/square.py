@@ -1,4 +1,4 @@
-"""Base of the solutions on a square: the domain, the reference speed and the duration."""
+"""Bases of the solutions on a square and on a cube: the domain, the reference speed and the duration."""
 
 from dataclasses import dataclass
 from math import inf
@@ -30,6 +30,7 @@ class Square:
     L: float = 1.0
     C: float = 100.0
     material: ClassVar[str] = "neo_hookean"  # what a study of it takes if nothing else is asked for
+    coordinates: ClassVar[int] = 2
 
     def __post_init__(self) -> None:
         if not (self.L > 0 and self.C > 0):
@@ -37,16 +38,16 @@ class Square:
 
     @property
     def lower(self) -> Floats:
-        """Lower corner of the domain, (2,)."""
-        return np.zeros(2)
+        """Lower corner of the domain, (2,), of a cube (3,)."""
+        return np.zeros(self.coordinates)
 
     @property
     def upper(self) -> Floats:
-        """Upper corner of the domain, (2,)."""
-        return np.full(2, self.L)
+        """Upper corner of the domain, (2,), of a cube (3,)."""
+        return np.full(self.coordinates, self.L)
 
     def layout(self, dx: float, ppc: int, offset: Offset = CENTRED) -> Layout:
-        """Layout of square domains, `ppc` in a cell of side dx."""
+        """Layout of square or cubic domains, `ppc` in a cell of side dx."""
         return rectangle(self.lower, self.upper, dx, ppc, offset)
 
     @property
@@ -76,3 +77,10 @@ class Square:
         import sympy as sp
 
         return sp.Integer(int(value)) if float(value).is_integer() else sp.Float(value)
+
+
+@dataclass(frozen=True)
+class Cube(Square):
+    """Body of a solution in three dimensions, on a cube: for other solvers, as the reference solver has two."""
+
+    coordinates: ClassVar[int] = 3

@@ -1,7 +1,7 @@
 """Layouts of particles at the start, whose domains tile a body without gaps or overlaps."""
 
 from dataclasses import dataclass
-from math import isqrt, pi
+from math import pi
 
 import numpy as np
 
@@ -19,11 +19,12 @@ class Layout:
     Parameters
     ----------
     X
-        Reference positions (P,2).
+        Reference positions (P,2), or (P,3).
     V0
-        Areas (P,) of the parallelograms of `r0`, and of the pieces of the body that the particles stand for.
+        Areas (P,), or volumes, of the parallelograms of `r0`, and of the pieces of the body that the particles stand
+        for.
     r0
-        Half side vectors (P,2,2), one a row.
+        Half side vectors (P,2,2), or (P,3,3), one a row.
     bent
         Corners (P,4,2) of those pieces where they are not the parallelograms.
     """
@@ -70,28 +71,32 @@ def parallelograms(centre: Floats, r: Floats) -> Floats:
     return corners
 
 
-def per_side(ppc: int) -> int:
-    """Particles along a side of a cell with `ppc` of them. Raises ValueError unless that is a square number."""
-    side = isqrt(max(ppc, 0))
-    if side < 1 or side * side != ppc:
-        raise ValueError(f"{ppc} particles per cell is not a square number; choose 1, 4, 9, 16, ...")
+def per_side(ppc: int, dimension: int = 2) -> int:
+    """Particles along a side of a cell with `ppc` of them. Raises ValueError unless that is a square, or cube, number.
+
+    A cell has as many sides as the `dimension` says.
+    """
+    side: int = round(max(ppc, 0) ** (1 / dimension))
+    if side < 1 or side**dimension != ppc:
+        power, choices = ("square", "1, 4, 9, 16") if dimension == 2 else ("cube", "1, 8, 27, 64")
+        raise ValueError(f"{ppc} particles per cell is not a {power} number; choose {choices}, ...")
     return side
 
 
 def rectangle(lower: Floats, upper: Floats, dx: float, ppc: int, offset: Offset = CENTRED) -> Layout:
-    """Regular layout of a rectangle, column by column.
+    """Regular layout of a rectangle, column by column, or of a block.
 
     Parameters
     ----------
     lower, upper
-        Corners of the rectangle, (2,).
+        Corners of the rectangle or block, (d,).
     dx
         Side of a grid cell.
     ppc
-        Particles in each cell, a square number.
+        Particles in each cell, a square number; of a block a cube number.
     offset
         Shift of all faces between particles along x and y, as a fraction of their spacing, each in (-1/2, 1/2). The
-        body's own edges stay, so the first and last domains are wider or narrower.
+        body's own edges stay, so the first and last domains are wider or narrower. A block takes none.
 
     Returns
     -------
@@ -103,8 +108,8 @@ def rectangle(lower: Floats, upper: Floats, dx: float, ppc: int, offset: Offset 
     ValueError
         For another `ppc` or offset.
     """
-    step = dx / per_side(ppc)
-    return graded([faces(lower[a], upper[a], step, offset[a]) for a in (0, 1)])
+    step, shift = dx / per_side(ppc, len(lower)), (*offset, 0.0)
+    return graded([faces(lower[a], upper[a], step, shift[a]) for a in range(len(lower))])
 
 
 def faces(first: float, last: float, step: float, offset: float) -> Floats:
@@ -123,12 +128,13 @@ def graded(edges: list[Floats]) -> Layout:
     Parameters
     ----------
     edges
-        Coordinates of the faces on x and on y, (n+1,) each.
+        Coordinates of the faces on each axis, (n+1,) each.
     """
-    centre = np.stack(np.meshgrid(*[(e[1:] + e[:-1]) / 2 for e in edges], indexing="ij"), axis=-1).reshape(-1, 2)
-    half = np.stack(np.meshgrid(*[np.diff(e) / 2 for e in edges], indexing="ij"), axis=-1).reshape(-1, 2)
-    r0 = half[:, :, None] * np.eye(2)
-    return Layout(centre, 4.0 * half.prod(axis=1), r0)
+    d = len(edges)
+    centre = np.stack(np.meshgrid(*[(e[1:] + e[:-1]) / 2 for e in edges], indexing="ij"), axis=-1).reshape(-1, d)
+    half = np.stack(np.meshgrid(*[np.diff(e) / 2 for e in edges], indexing="ij"), axis=-1).reshape(-1, d)
+    r0 = half[:, :, None] * np.eye(d)
+    return Layout(centre, 2.0**d * half.prod(axis=1), r0)
 
 
 def annulus(inner: float, outer: float, dx: float, ppc: int) -> Layout:

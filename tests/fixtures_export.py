@@ -3,15 +3,21 @@
 from functools import cache
 from pathlib import Path
 
+from mpm_verify.mms.discretisation import dimension
 from mpm_verify.mms.export.case import Exported
 from mpm_verify.reports.export.case_folder import write
+from mpm_verify.solver.plugins import SOLUTIONS, available, create
 from mpm_verify.verify.commands.export import made
+
+PLANE, SOLID = ([name for name in available(SOLUTIONS) if dimension(create(SOLUTIONS, name)) == d] for d in (2, 3))
 
 
 @cache
-def exported(solution: str, cells: int = 4, ppc: int = 4, material: str = "") -> Exported:
+def exported(
+    solution: str, cells: int = 4, ppc: int | None = None, material: str = "", dim: int | None = None
+) -> Exported:
     """Content of a case."""
-    return made(solution, material, cells, ppc, 0.4, 16)
+    return made(solution, material, cells, ppc, 0.4, 16, dim)
 
 
 def folder_of(solution: str, folder: Path, **more: int) -> Path:

@@ -12,7 +12,7 @@ import test_defects as defects
 from pydantic import TypeAdapter
 
 from mpm_verify.mms.audit import Audit, audit
-from mpm_verify.mms.blind_spots import ALWAYS, RULES, SEEN_BY, BlindSpotCode
+from mpm_verify.mms.blind_spots import ALWAYS, RULES, SEEN_BY, SEEN_BY_SOLID, BlindSpotCode
 from mpm_verify.mms.manufacture import Manufactured, manufacture
 from mpm_verify.mms.measure import boundary
 from mpm_verify.reports.sentences.blind_spots import sentence
@@ -40,6 +40,9 @@ BLIND = {
     "expanding_ring": {"rotation", "order", "spin", "start", "mirror", "walls"},
     "swirl": {"walls"},
     "bar": DIAGONAL | {"start", "plane"},
+    "bump3d": {"walls", "rotation", "amplitude", "crossing"},
+    "bump3d:A=0.05": {"walls"},
+    "swirl3d": {"walls"},
 }
 
 
@@ -109,20 +112,20 @@ def test_sentences_have_the_numbers() -> None:
     assert "with 1 % of" in {s.code: sentence(s) for s in case("axis_aligned:phase=0.01").audit.spots}["start"]
 
 
-@pytest.mark.parametrize(("key", "text"), [(key, text) for key, texts in SEEN_BY.items() for text in texts])
+@pytest.mark.parametrize(
+    ("key", "text"),
+    [(key, text) for table in (SEEN_BY, SEEN_BY_SOLID) for key, texts in table.items() for text in texts],
+)
 def test_who_is_said_to_see_it_does(key: str, text: str) -> None:
     assert key not in case(text).blind
-
-
-def det(F: Floats) -> Floats:
-    return F[:, 0, 0] * F[:, 1, 1] - F[:, 0, 1] * F[:, 1, 0]
 
 
 def changed(c: Case) -> dict[str, float]:
     """What the named defects change, as shares, by the fields' own functions at random places and times."""
     rng, e = np.random.default_rng(3), c.exact
     width = float(c.solution.upper[0] - c.solution.lower[0])
-    X = rng.permutation(c.solution.layout(width / 24, 4).X)[:300]
+    d = len(c.solution.lower)
+    X = rng.permutation(c.solution.layout(width / 24, 2**d).X)[:300]
     T, h = c.solution.duration, 1e-4 * c.solution.duration
     found: dict[str, list[float]] = {}
 
@@ -132,14 +135,14 @@ def changed(c: Case) -> dict[str, float]:
     stiffer = manufacture(c.solution, type(c.law)(2 * c.law.mu * 1.45, 0.45, c.law.rho0), c.law.rho0)  # lambda alone
     for t in T * np.array([0.13, 0.31, 0.52, 0.77]):
         F, sigma, v = e.F(X, t), e.sigma(X, t), e.v(X, t)
-        F_T, strain = F.transpose(0, 2, 1), F - np.eye(2)
+        F_T, strain = F.transpose(0, 2, 1), F - np.eye(d)
         L = (e.F(X, t + h) - e.F(X, t - h)) / (2 * h) @ np.linalg.inv(F)
-        note("shear", sigma * [1, 1, 1, 0], sigma, sigma)
+        note("shear", sigma * ([1, 1, 1] + [0] * (sigma.shape[1] - 3)), sigma, sigma)
         note("rotation", F_T, F, strain)
         note("order", F @ L, L @ F, L * np.abs(strain).max())
         note("spin", L.transpose(0, 2, 1), L, L)
         note("volume", stiffer.P(X, t), e.P(X, t), e.P(X, t))
-        note("volume", sigma * det(F)[:, None], sigma, sigma * np.abs(strain).max())
+        note("volume", sigma * np.linalg.det(F)[:, None], sigma, sigma * np.abs(strain).max())
         note("load", 0 * v, e.b(X, t), (e.v(X, t + h) - e.v(X, t - h)) / (2 * h))
         note("gradient", F, F[:1], strain * np.ones((len(X), 1, 1)))
         note("velocity", e.v(X, 0.0), 0 * v, v)

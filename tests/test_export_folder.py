@@ -10,7 +10,7 @@ import meshio
 import numpy as np
 import pytest
 from fixtures_command import Call, caller, one_line
-from fixtures_export import exported, folder_of
+from fixtures_export import PLANE, SOLID, exported, folder_of
 from jsonschema import Draft202012Validator, ValidationError
 
 from mpm_verify.cases.mms.execute import setup
@@ -18,10 +18,10 @@ from mpm_verify.cases.mms.run import Run
 from mpm_verify.mms.discretisation import output_steps
 from mpm_verify.mms.export.files import CASE, FIELDS, FORCE, PARTICLES
 from mpm_verify.reports.export.case_folder import VTU, columns, read, schema, write
-from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS, available, create
+from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS, create
 
 TOP = Path(__file__).resolve().parent.parent
-each = pytest.mark.parametrize("solution", available(SOLUTIONS))
+each = pytest.mark.parametrize("solution", [*PLANE, *(pytest.param(name, marks=pytest.mark.slow) for name in SOLID)])
 
 
 @pytest.fixture
@@ -43,13 +43,14 @@ def test_particles_are_read_back_bit_by_bit(solution: str, tmp_path: Path) -> No
     points = meshio.read(folder / VTU)
     for name, values in case.particles.items():
         assert np.asarray(points.point_data[name]).tobytes() == np.ascontiguousarray(values).tobytes(), name
-    np.testing.assert_array_equal(points.points[:, :2], np.column_stack([case.particles["x"], case.particles["y"]]))
+    positions = np.column_stack([case.particles[axis] for axis in "xyz" if axis in case.particles])
+    np.testing.assert_array_equal(points.points[:, : positions.shape[1]], positions)
     for file, values in ((FORCE, case.force), (FIELDS, case.fields)):
         again = columns(folder / file, tuple(values))
         assert all(again[name].tobytes() == np.ascontiguousarray(values[name]).tobytes() for name in values)
 
 
-@each
+@pytest.mark.parametrize("solution", PLANE)
 def test_particles_are_those_of_a_run(solution: str) -> None:
     """Positions, velocities at -dt/2, F, sigma, volumes and masses of the reference solver at its start; its grid."""
     case = exported(solution, cells=8)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import sympy as sp
+from fixtures_export import PLANE
 
 from mpm_verify.mms.exact import ROOM, ROWS
 from mpm_verify.mms.hoist import Hoist
@@ -34,11 +35,7 @@ def parameters(name: str) -> list[str]:
     return [item.name for item in fields(load("mpm_verify.mms.solutions", name))]
 
 
-SOLUTIONS = [
-    f"{name}:{extra}".rstrip(":")
-    for name in available("mpm_verify.mms.solutions")
-    for extra in ("", *EXTRA.get(name, []))
-]
+SOLUTIONS = [f"{name}:{extra}".rstrip(":") for name in PLANE for extra in ("", *EXTRA.get(name, []))]
 MATERIALS = ["neo_hookean", "neo_hookean:E=70,nu=0.45,rho0=3", "linear_elastic:E=200,nu=0.1,rho0=2"]
 every = pytest.mark.parametrize("text", SOLUTIONS)
 COMPLEX_STEP = 1e-30

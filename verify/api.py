@@ -39,7 +39,7 @@ def manufacture(solution: str, material: str = "", rho0: float | None = None) ->
     -------
     Manufactured
         Functions of reference positions X (P,2) and a time: u, x, v, b (P,2), F, P (P,2,2), sigma (P,4) as xx, yy, zz,
-        xy.
+        xy. Of a solution in three dimensions (P,3), (P,3,3), and (P,6), with yz and xz last.
 
     Raises
     ------

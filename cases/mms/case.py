@@ -13,10 +13,12 @@ from mpm_verify.cases.judging.records import Expectation
 from mpm_verify.cases.mms.expectations import JUDGED_QUANTITY, expected
 from mpm_verify.cases.mms.external import column_map
 from mpm_verify.cases.mms.external.command import PYTHON, program, version
-from mpm_verify.cases.mms.run import AXES, NORMS, QUANTITIES, QUICK, Result, Run
+from mpm_verify.cases.mms.run import AXES, NORMS, QUANTITIES, QUICK, SOLID, Result, Run
 from mpm_verify.cases.mms.stability import check_time_steps
 from mpm_verify.mms.cells import fitting, ratio
+from mpm_verify.mms.discretisation import dimension
 from mpm_verify.mms.energy import check_energy
+from mpm_verify.solver.layout import per_side
 from mpm_verify.solver.plugins import (
     LAYOUTS,
     MATERIALS,
@@ -58,6 +60,9 @@ def canonical(values: dict[str, Any]) -> dict[str, Any]:
     """Specifications with only the parameters that differ from their defaults, and the solution's own material."""
     solution = in_precision(values.get("solution", Run.solution), values.get("precision", Run.precision))
     values["solution"] = solution
+    own = dimension(create(SOLUTIONS, solution))
+    if values.setdefault("dim", own) == 2 != own:
+        raise ValueError(f"{label(solution)} has three dimensions, dim = {values['dim']} cannot be; leave it out")
     values["material"] = canonical_name(MATERIALS, values.get("material") or create(SOLUTIONS, solution).material)
     values["transfer"] = canonical_name(TRANSFERS, values.get("transfer", Run.transfer))
     values["layout"] = canonical_name(LAYOUTS, values.get("layout", Run.layout))
@@ -104,11 +109,31 @@ def check(runs: Sequence[Run]) -> None:
             raise ValueError(f"--{name} is for a solver of your own; give --solver too")
     if any(run.columns and run.solver.startswith(PYTHON) for run in runs):
         raise ValueError("--columns is for files; a Python function returns arrays by our names")
+    check_ours([run for run in runs if not run.solver])
+    check_solutions(runs)
+
+
+def check_ours(runs: Sequence[Run]) -> None:
+    """Raise ValueError for three dimensions, which the reference solver does not have."""
+    for run in runs:
+        own = is_file(run.solution) and dimension(create(SOLUTIONS, run.solution)) == 3  # told by its check
+        if run.dim == 3 and not own:
+            what = f"--solution {label(run.solution)}" + " --dim 3" * (not run.solid)
+            raise ValueError(
+                f"{label(run.solution)} in three dimensions is for a solver of your own, the reference solver has two: "
+                f"verify mms --solver './mine {{case}} {{out}}' {what}"
+            )
+
+
+def check_solutions(runs: Sequence[Run]) -> None:
+    """Raise ValueError with one line for a solution, material or layout that no solver can run."""
     cells: dict[tuple[str, str, str], set[int]] = {}
     for run in runs:
         cells.setdefault((run.solution, run.material, run.layout), set()).add(run.cells)
     for (specification, model, layout), counts in cells.items():
         solution, material = create(SOLUTIONS, specification), create(MATERIALS, model)
+        for run in (run for run in runs if run.solution == specification):
+            per_side(run.ppc, dimension(solution))
         check_energy(material)
         create(LAYOUTS, layout).check(solution)
         if is_file(specification):
@@ -133,6 +158,11 @@ def parts(asked: Asked) -> list[Asked]:
     solutions = asked.values.get("solution", (Run.solution,))
     if len(set(asked.values.get("start", ()))) > 1:  # a search for the one that fits
         asked = replace(asked, values={**asked.values, "order": (0.0,)})
+    solid = [one for one in solutions if dimension(create(SOLUTIONS, one)) == 3]
+    if solid:
+        flat = tuple(one for one in solutions if one not in solid)
+        rest = parts(replace(asked, values={**asked.values, "solution": flat})) if flat else []
+        return [*rest, replace(asked, values={**SOLID, **asked.values, "solution": tuple(solid)})]
     if any(asked.values.get("solver", ())) and not asked.quick:
         asked = replace(asked, values={**THEIRS, **asked.values})
     if "cells" in asked.values or not any(is_file(one) for one in solutions):

@@ -22,12 +22,14 @@ from mpm_verify.cases.mms.deviations import (
 )
 from mpm_verify.cases.mms.recorded import recorded
 from mpm_verify.cases.mms.run import QUANTITIES
+from mpm_verify.mms.discretisation import dimension
 from mpm_verify.mms.square import Square
 from mpm_verify.solver.plugins import MATERIALS, METHODS, SOLUTIONS, available, create, is_file, load, split
 from mpm_verify.solver.promise import Promise
 
 JUDGED_QUANTITY = ("u", "rms")
 JUDGED_PPC = (4, 9)
+SOLID_PPC = (8, 27)  # of three dimensions
 LARGE = ("swirl", "expanding_ring", "generalised_vortex")  # solutions of large deformation, with shear and rotation
 SMALL = 1e-5  # amplitude over size
 STALL = 1.8  # the lower end of the band around order 2
@@ -95,9 +97,9 @@ def expected(
     of somebody else, within 10 % on the finest cells, of one order of the step or another. A user's own solution has
     the order of u that its file declares, or else the one that the method promises.
     """
-    if norm != "rms" or ppc not in JUDGED_PPC:
-        return None
     plugin: Any = create(SOLUTIONS, solution)
+    if norm != "rms" or ppc not in (JUDGED_PPC if dimension(plugin) == 2 else SOLID_PPC):
+        return None
     if is_file(solution):
         if quantity != "u":
             return None

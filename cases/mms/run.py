@@ -6,7 +6,7 @@ from typing import ClassVar, get_args
 
 from mpm_verify.cases.harness.study import ResultRecord, RunRecord, axis
 from mpm_verify.mms.blind_spots import BlindSpot
-from mpm_verify.solver.plugins import LAYOUTS, MATERIALS, METHODS, SOLUTIONS, TRANSFERS, label
+from mpm_verify.solver.plugins import LAYOUTS, MATERIALS, METHODS, SOLUTIONS, TRANSFERS, available, label, load, split
 from mpm_verify.solver.stress_update import Stress
 
 QUANTITIES = ("u", "v", "F", "sigma")
@@ -17,6 +17,7 @@ PATHS = ("h", "h2")  # of dt as cells get finer
 BEGIN = 8  # cells at which both paths have the same C dt / dx
 AXES = {"cells": (8, 16, 32, 64, 128), "ppc": (1, 4, 9)}  # values that nobody asks for; of the rest the defaults
 QUICK = {"cells": (8, 12, 16, 24, 32), "ppc": (4,)}
+SOLID = {"cells": (4, 6, 8, 12, 16), "ppc": (8,)}  # of a solution in three dimensions, whatever else
 
 
 @dataclass(frozen=True)
@@ -34,7 +35,7 @@ class Run(RunRecord):
     solution: str = axis("axis_aligned", "Manufactured solution, or a file of your own.", SOLUTIONS)
     material: str = axis("", "Constitutive model; usual is the solution's own.", MATERIALS)
     cells: int = axis(8, "Cells along a side of the domain.")
-    ppc: int = axis(4, "Particles per cell, square numbers.")
+    ppc: int = axis(4, "Particles per cell, square numbers; of a solution in three dimensions cube numbers.")
     courant: float = axis(
         0.4,
         "C dt / dx, C the reference speed of the solution; with more, 0.4,0.2,0.1, the finest cells run with each, and "
@@ -54,6 +55,11 @@ class Run(RunRecord):
     solver_version: str = axis("", "Version of that solver; usual is a hash of the files that its command names.")
     columns: str = axis("", "Map of the columns that it writes, a TOML file; see docs/own-solver.md.", whole=True)
     order: float = axis(0.0, "Order expected of u; 0: what is registered of the method.", named=False)
+    dim: int = axis(
+        2,
+        "Dimensions of the case for a solver of your own: with 3 a plane-strain solution is one cell thick; usual is "
+        "the solution's own.",
+    )
     start: str = axis("", "Time levels that it is given by force, see docs/own-solver.md; or all.", choices=STARTS)
     precision: str = axis("double", "Precision that it computes with: double, single.", choices=PRECISIONS)
     time_step: str = axis(
@@ -68,7 +74,9 @@ class Run(RunRecord):
             raise ValueError(
                 f"cells = {self.cells} cannot be run; choose whole numbers from 2 to 4096, such as 8,16,32,64"
             )
-        if self.ppc < 1 or isqrt(self.ppc) ** 2 != self.ppc:
+        if self.dim not in (2, 3):
+            raise ValueError(f"dim = {self.dim} must be 2, plane strain, or 3")
+        if self.dim == 2 and (self.ppc < 1 or isqrt(self.ppc) ** 2 != self.ppc):
             raise ValueError(f"{self.ppc} particles per cell is not a square number; choose from 1, 4, 9, 16, ...")
         if not 1e-3 <= self.courant <= 10:
             raise ValueError(f"courant = {self.courant} cannot be run; choose 0.001 to 10, 0.4 is usual")
@@ -111,26 +119,35 @@ class Run(RunRecord):
     @property
     def cost(self) -> float:
         """Particle updates, up to a factor."""
-        return self.cells**3 * self.ppc / self.courant_number
+        return self.cells * self.particles / self.courant_number
 
     @property
     def updates(self) -> float:
-        """Particle updates of a square over the usual duration."""
+        """Particle updates of a square or cube over the usual duration."""
         return 2.0 * self.cost
 
     @property
     def particles(self) -> int:
-        """Number of particles of a square."""
-        return self.cells**2 * self.ppc
+        """Number of particles of a square or cube, or of a slice in as many layers as the root of a cell's."""
+        if self.solid:
+            return self.cells**3 * self.ppc
+        return self.cells**2 * self.ppc * (isqrt(self.ppc) if self.dim == 3 else 1)
 
     @property
     def nodes(self) -> int:
-        """Number of nodes of a square."""
-        return (self.cells + 1) ** 2
+        """Number of nodes of a square or cube, or of a slice."""
+        return (self.cells + 1) ** (3 if self.solid else 2) * (2 if self.dim == 3 and not self.solid else 1)
+
+    @property
+    def solid(self) -> bool:
+        """Whether the solution itself has three dimensions."""
+        name = split(self.solution)[0]
+        return self.dim == 3 and name in available(SOLUTIONS) and getattr(load(SOLUTIONS, name), "coordinates", 2) == 3
 
     def __str__(self) -> str:
         name = self.solver.split()[0] if self.solver else label(self.method)
-        return f"{name} {self.cells}² cells, {self.ppc} per cell"
+        power, thick = "³" if self.solid else "²", ", one cell thick" if self.dim == 3 and not self.solid else ""
+        return f"{name} {self.cells}{power} cells, {self.ppc} per cell{thick}"
 
 
 @dataclass(frozen=True)

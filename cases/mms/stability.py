@@ -10,7 +10,7 @@ import numpy as np
 
 from mpm_verify.cases.mms.exact import manufactured
 from mpm_verify.cases.mms.run import Run
-from mpm_verify.mms.discretisation import time_steps, width
+from mpm_verify.mms.discretisation import dimension, time_steps, width
 from mpm_verify.mms.manufacture import Manufactured
 from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS, create, is_file, label, parameters_of, split
 
@@ -47,8 +47,12 @@ def check_time_steps(runs: Sequence[Run], courants: Sequence[float]) -> None:
 
 def fastest(solution: Any, exact: Manufactured, lag: float) -> float:
     """Largest speed of the body over the times from -lag to 0, sampled, with some slack."""
-    corners = solution.layout(width(solution) / CELLS, 4).corners.reshape(-1, 2)
-    most = max(float(np.hypot(*exact.v(corners, time).T).max()) for time in np.linspace(-lag, 0.0, TIMES))
+    if dimension(solution) == 2:
+        X = solution.layout(width(solution) / CELLS, 4).corners.reshape(-1, 2)
+        most = max(float(np.hypot(*exact.v(X, time).T).max()) for time in np.linspace(-lag, 0.0, TIMES))
+    else:
+        X = solution.layout(4 * width(solution) / CELLS, 8).X
+        most = max(float(np.linalg.norm(exact.v(X, time), axis=1).max()) for time in np.linspace(-lag, 0.0, TIMES))
     return most * (1 + SLACK)
 
 

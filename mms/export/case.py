@@ -6,20 +6,23 @@ from typing import Any
 
 import numpy as np
 
-from mpm_verify.mms.derive import Fields, derive
-from mpm_verify.mms.discretisation import grid_box, output_steps, time_steps, width
+from mpm_verify.mms.components import AXES, COMPONENTS
+from mpm_verify.mms.derive import derive
+from mpm_verify.mms.discretisation import dimension, grid_box, output_steps, time_steps, width
 from mpm_verify.mms.export.language import Heading
 from mpm_verify.mms.export.languages import LANGUAGES
-from mpm_verify.mms.export.program import AXES, COMPONENTS, Program, programs
+from mpm_verify.mms.export.program import Program, programs
 from mpm_verify.mms.export.record import FORMAT, CaseRecord, MaterialRecord, Precision
 from mpm_verify.mms.export.selfcheck import at_position, checked, rows
+from mpm_verify.mms.export.slice import Slice
 from mpm_verify.mms.export.start import Start
 from mpm_verify.mms.manufacture import Manufactured, manufacture
-from mpm_verify.solver.layout import Layout
+from mpm_verify.solver.layout import Layout, per_side
 from mpm_verify.solver.plugins import label, parameters_of
 from mpm_verify.solver.state import Floats
 
 Columns = dict[str, Floats]  # (n,) each, by name
+SIDES = ("left", "right", "bottom", "top", "back", "front")  # lower and upper in x, in y, in z
 
 
 @dataclass(frozen=True)
@@ -72,9 +75,10 @@ def export(
     names
         How solution and material are called.
     solution, material
-        Solution, and constitutive model with an energy.
+        Solution, or a slice of one, and constitutive model with an energy.
     cells, ppc
-        Cells along the width of the body, and particles in a cell, a square number.
+        Cells along the width of the body, and particles in a cell, a square number; of a body in three dimensions a
+        cube number. Of a slice it is the square number of a layer: there are as many layers as its root.
     courant
         C dt / dx, C the reference speed of the solution.
     frames
@@ -97,6 +101,7 @@ def export(
         For a material without an energy, a count of particles per cell that is not square, and a displacement with
         functions that other languages do not have.
     """
+    d, layers = dimension(solution), per_side(ppc) if isinstance(solution, Slice) else 0
     exact = manufacture(solution, material, material.rho0)
     dx = width(solution) / cells
     steps, dt = time_steps(solution, dx, courant)
@@ -104,21 +109,21 @@ def export(
     code = programs(exact.fields)
     if start:
         code[0] = programs(start.fields(exact.fields, dt))[0]
-    heading = Heading(f"{label(names.solution)} in {label(names.material)}", len(solution.lower), width(solution),
-                      ", ".join(COMPONENTS[len(solution.lower)]))  # fmt: skip
+    heading = Heading(f"{label(names.solution)} in {label(names.material)}", d, width(solution),
+                      ", ".join(COMPONENTS[d]))  # fmt: skip
     sources = {name: language.files(code, heading) for name, language in LANGUAGES.items()}
     lower, upper = grid_box(solution, dx)
     record = CaseRecord(
-        format=FORMAT, solution=label(names.solution), dimension=2 if len(solution.lower) == 2 else 3,
-        body="ring" if hasattr(solution, "inner") else "rectangle",
+        format=FORMAT, solution=label(names.solution), dimension=2 if d == 2 else 3,
+        body="ring" if hasattr(plane(solution), "inner") else "rectangle" if d == 2 else "box",
         lower=numbers(solution.lower), upper=numbers(solution.upper),
-        grid_lower=numbers(lower), grid_upper=numbers(upper), cells=cells, dx=dx, ppc=ppc, particles=len(layout),
-        edges=edges(solution), duration=float(solution.duration), steps=steps, dt=dt, courant=courant,
-        frames=output_steps(steps, frames), t_half=-dt / 2, t_before=-dt, precision=precision,
+        grid_lower=numbers(lower), grid_upper=numbers(upper), cells=cells, dx=dx, ppc=ppc * max(1, layers),
+        particles=len(layout), edges=edges(solution), duration=float(solution.duration), steps=steps, dt=dt,
+        courant=courant, frames=output_steps(steps, frames), t_half=-dt / 2, t_before=-dt, precision=precision,
         material=MaterialRecord(label(names.material), constants(material), getattr(material, "formula", "")),
-        languages={name: tuple(files) for name, files in sources.items()},
+        languages={name: tuple(files) for name, files in sources.items()}, layers=layers,
     )  # fmt: skip
-    force, fields = selfcheck(code, exact.fields, solution, material, layout) if checked else ({}, {})
+    force, fields = selfcheck(code, solution, material, layout) if checked else ({}, {})
     texts = {file: text for files in sources.values() for file, text in files.items()}
     columns = particles(exact, layout, material.rho0, dt)
     return Exported(record, start.particles(columns) if start else columns, force, fields, texts)
@@ -136,14 +141,22 @@ def constants(material: Any) -> dict[str, float]:
     return {name: float(value) for name, value in found.items() if isinstance(value, int | float)}
 
 
+def plane(solution: Any) -> Any:
+    """Solution that a slice is cut from, or the solution itself."""
+    return solution.plane if isinstance(solution, Slice) else solution
+
+
 def edges(solution: Any) -> dict[str, Any]:
-    """Kinds of the edges by their names: the sides of a rectangle, or the two circles of a ring."""
+    """Kinds of the edges by their names: the sides of a rectangle, the faces of a box, or the two circles of a ring."""
+    if isinstance(solution, Slice):
+        return edges(solution.plane) | solution.faces
     given = solution.boundary
     if hasattr(solution, "inner"):
         return {"inner": given, "outer": given}
-    kinds = [given] * 4 if isinstance(given, str) else list(given)
+    sides = SIDES[: 2 * dimension(solution)]
+    kinds = [given] * len(sides) if isinstance(given, str) else list(given)
     kinds = ["prescribed" if kind == "moving" else kind for kind in kinds]
-    return dict(zip(("left", "right", "bottom", "top"), kinds, strict=True))
+    return dict(zip(sides, kinds, strict=True))
 
 
 def named(letter: str, values: Floats, after: str = "") -> Columns:
@@ -176,14 +189,12 @@ def positions(values: Floats, first: str = "X") -> Columns:
     return {letters[k]: values[:, k] for k in range(values.shape[1])}
 
 
-def selfcheck(
-    code: Sequence[Program], fields: Fields, solution: Any, material: Any, layout: Layout
-) -> tuple[Columns, Columns]:
+def selfcheck(code: Sequence[Program], solution: Any, material: Any, layout: Layout) -> tuple[Columns, Columns]:
     """Columns (R,) of the force at some rows, and of the fields there, with the tolerance of each value."""
     exact, known = derive(solution, material, material.rho0, exact=True), {program.name: program for program in code}
     X, times = rows(layout, float(solution.duration))
     found = {
-        name: checked(known[program], exact.full(expressions), fields, X, times)
+        name: checked(known[program], expressions, exact, X, times)
         for name, program, expressions in (
             ("b", "body_force", exact.b), ("u", "displacement", exact.u), ("v", "velocity", exact.v),
             ("F", "deformation", exact.F), ("s", "stress", exact.sigma),
@@ -192,7 +203,7 @@ def selfcheck(
     at = {**positions(X), "t": times}
     tensor = (len(X), *known["deformation"].shape)
     force = at | named("b", found["b"].values) | named("tolerance_b", found["b"].tolerance)
-    beside = at_position(found["b"], fields, exact, X, times, width(solution))
+    beside = at_position(found["b"], exact, X, times, width(solution))
     force |= positions(X + found["u"].values, "x") | named("tolerance_at_b", beside.tolerance)
     values: Columns = dict(at)
     for name in "uvFs":

@@ -10,11 +10,11 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
+from mpm_verify.mms.components import COMPONENTS
 from mpm_verify.mms.export.expected import Table
 from mpm_verify.mms.export.language import filled
 from mpm_verify.mms.export.languages import LANGUAGES
 from mpm_verify.mms.export.process import Ended, run
-from mpm_verify.mms.export.program import COMPONENTS
 from mpm_verify.solver.state import Floats
 
 COMPILES, RUNS = 120.0, 60.0  # seconds

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mpm_verify.mms.export.program import AXES, COMPONENTS
+from mpm_verify.mms.components import AXES, COMPONENTS
 from mpm_verify.solver.state import Floats
 
 

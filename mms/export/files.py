@@ -2,12 +2,11 @@
 
 import json
 from collections.abc import Mapping
-from dataclasses import asdict
 
 import numpy as np
 
 from mpm_verify.mms.export.case import Exported
-from mpm_verify.mms.export.record import flat
+from mpm_verify.mms.export.record import content, flat
 from mpm_verify.solver.state import Floats
 
 CASE, FLAT, PARTICLES = "case.json", "case.txt", "particles.csv"
@@ -20,7 +19,7 @@ def files(case: Exported) -> dict[str, str]:
         FLAT: "".join(f"{name} {value}\n" for name, value in flat(case.record)),
         PARTICLES: csv(case.particles), **case.sources,
         **{name: csv(columns) for name, columns in ((FORCE, case.force), (FIELDS, case.fields)) if columns},
-        CASE: json.dumps(asdict(case.record), indent=1) + "\n",
+        CASE: json.dumps(content(case.record), indent=1) + "\n",
     }  # fmt: skip
 
 

@@ -8,9 +8,6 @@ import sympy as sp
 from mpm_verify.mms.derive import Fields
 from mpm_verify.mms.straight_line import assignments, factors, whole_numbers
 
-COMPONENTS = {2: ("xx", "yy", "zz", "xy"), 3: ("xx", "yy", "zz", "xy", "yz", "xz")}  # of a stress
-AXES = "xyz"
-
 
 @dataclass(frozen=True)
 class Program:

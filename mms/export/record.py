@@ -40,7 +40,7 @@ class CaseRecord:
     dimension
         2, plane strain; 3.
     body
-        Shape of the body.
+        Shape of the body; a ring in three dimensions is one cell thick.
     lower, upper
         Corners of the body's box, lengths.
     grid_lower, grid_upper
@@ -50,7 +50,8 @@ class CaseRecord:
     ppc, particles
         Particles in a cell, and all of them.
     edges
-        Kind of each edge, by its name.
+        Kind of each edge, by its name: left and right are lower and upper in x, bottom and top in y, back and front
+        in z.
     duration, steps, dt, courant
         Time, number of steps, their length, and C dt / dx with the reference speed C of the solution.
     frames
@@ -61,12 +62,15 @@ class CaseRecord:
         Languages that the force is written in, with their files.
     precision
         Precision that the solver computes with.
+    layers
+        Layers of particles in z of a plane-strain solution that is one cell thick in three dimensions; otherwise it is
+        not there.
     """
 
     format: Literal["mpm-verify-case-1"]
     solution: str
     dimension: Literal[2, 3]
-    body: Literal["rectangle", "ring"]
+    body: Literal["rectangle", "ring", "box"]
     lower: tuple[float, ...]
     upper: tuple[float, ...]
     grid_lower: tuple[float, ...]
@@ -86,6 +90,12 @@ class CaseRecord:
     material: MaterialRecord
     languages: dict[str, tuple[str, ...]]
     precision: Precision = "double"
+    layers: int = 0
+
+
+def content(record: CaseRecord) -> dict[str, Any]:
+    """Record as case.json has it: without layers where there is no slice."""
+    return {name: value for name, value in asdict(record).items() if name != "layers" or value}
 
 
 def flat(record: CaseRecord) -> list[tuple[str, str]]:
@@ -105,7 +115,7 @@ def flat(record: CaseRecord) -> list[tuple[str, str]]:
         elif value != "":
             found.append((name, repr(value) if isinstance(value, float) else str(value).replace(" ", "_")))
 
-    for name, value in asdict(record).items():
+    for name, value in content(record).items():
         if name == "material":
             add("material", {"name": value["name"], **value["constants"], "sigma": value["sigma"]})
         elif name != "languages":

@@ -43,7 +43,7 @@ def rows(layout: Layout, duration: float) -> tuple[Floats, Floats]:
     return layout.X[chosen] + np.einsum("ps,psa->pa", within, layout.r0[chosen]), times
 
 
-def checked(program: Program, expressions: Sequence[sp.Expr], fields: Fields, X: Floats, times: Floats) -> Checked:
+def checked(program: Program, expressions: Sequence[sp.Expr], exact: Fields, X: Floats, times: Floats) -> Checked:
     """Values and tolerances of an exported function.
 
     Parameters
@@ -51,9 +51,9 @@ def checked(program: Program, expressions: Sequence[sp.Expr], fields: Fields, X:
     program
         Function as it is exported.
     expressions
-        Its results in X, Y and t, without rounded constants.
-    fields
-        Fields that the program was made of.
+        Its results without rounded constants, of the exact fields.
+    exact
+        Fields without rounded constants.
     X, times
         Rows: reference positions (R,d) and times (R,).
 
@@ -62,20 +62,29 @@ def checked(program: Program, expressions: Sequence[sp.Expr], fields: Fields, X:
     Checked
         Values that are right to the last digit of a double, and tolerances.
     """
-    precise = precisely(fields, expressions)
+    precise = precisely(exact, expressions)
     values = np.array([[float(value) for value in precise(*at, t)] for at, t in zip(X.tolist(), times, strict=True)])
-    tolerance = SLACK * UNIT * np.array([errors(program, fields, at, t) for at, t in zip(X, times, strict=True)])
+    tolerance = SLACK * UNIT * np.array([errors(program, exact, at, t) for at, t in zip(X, times, strict=True)])
     smallest = UNIT * np.abs(values).max(axis=0)  # a zero that is left over of a sum
     return Checked(values, tolerance + smallest)
 
 
 def precisely(fields: Fields, expressions: Sequence[sp.Expr]) -> Any:
-    """Function of the coordinates and the time that gives the expressions at 30 digits, a list of mpmath numbers."""
-    compiled = sp.lambdify((*fields.X, fields.t), list(expressions), "mpmath", cse=True)
+    """Function of the coordinates and the time that gives the expressions at 30 digits, a list of mpmath numbers.
+
+    Of three coordinates the symbols that they are written in are evaluated first: in coordinates alone, as those of
+    two, they are so long that it takes minutes.
+    """
+    expressions = fields.full(list(expressions)) if len(fields.X) == 2 else expressions
+    at, used = (*fields.X, fields.t), set().union(*(sp.sympify(e).free_symbols for e in expressions))
+    inner = {symbol: e for symbol, e in fields.inner.items() if symbol in used}
+    first = sp.lambdify(at, list(inner.values()), "mpmath", cse=True)
+    last = sp.lambdify((*at, *inner), list(expressions), "mpmath", cse=True)
 
     def evaluated(*at: Any) -> list[Any]:
         with mpmath.workdps(DIGITS):
-            return [mpmath.mpf(value) for value in compiled(*(mpmath.mpf(value) for value in at))]
+            known = [mpmath.mpf(value) for value in at]
+            return [mpmath.mpf(value) for value in last(*known, *first(*known))]
 
     return evaluated
 
@@ -92,15 +101,15 @@ def errors(program: Program, fields: Fields, X: Floats, t: float) -> list[float]
     return [one.error for one in found]
 
 
-def at_position(force: Checked, fields: Fields, exact: Fields, X: Floats, times: Floats, width: float) -> Checked:
+def at_position(force: Checked, exact: Fields, X: Floats, times: Floats, width: float) -> Checked:
     """Force at the current positions x of the rows: the tolerance has room for an X that is found to some roundings.
 
     Parameters
     ----------
     force
         Force of the rows, as a function of the reference position.
-    fields, exact
-        Fields as they are exported, and without rounded constants.
+    exact
+        Fields without rounded constants.
     X, times
         Rows: reference positions (R,d) and times (R,).
     width
@@ -111,7 +120,7 @@ def at_position(force: Checked, fields: Fields, exact: Fields, X: Floats, times:
     Checked
         Same values, wider tolerances.
     """
-    b, F, h = precisely(exact, exact.full(exact.b)), precisely(exact, exact.F), SHORT * width
+    b, F, h = precisely(exact, exact.b), precisely(exact, exact.F), SHORT * width
     tolerance = force.tolerance.copy()
     for row, (at, t) in enumerate(zip(X, times, strict=True)):
         slope = np.abs(np.stack([difference(b, at, t, e) for e in h * np.eye(len(at))], axis=-1)) / h

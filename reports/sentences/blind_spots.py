@@ -2,7 +2,17 @@
 
 from collections.abc import Callable
 
-from mpm_verify.mms.blind_spots import CLEAR, FAINT, ROUND, SEEN_BY, SMALL, BlindSpot, BlindSpotCode, Numbers
+from mpm_verify.mms.blind_spots import (
+    CLEAR,
+    FAINT,
+    ROUND,
+    SEEN_BY,
+    SEEN_BY_SOLID,
+    SMALL,
+    BlindSpot,
+    BlindSpotCode,
+    Numbers,
+)
 from mpm_verify.reports.sentences.numbers import figure, percent
 
 MINUS = "\N{MINUS SIGN}"
@@ -13,8 +23,13 @@ def sentence(spot: BlindSpot) -> str:
     """Sentence on a blind spot or on what is seen; of a blind spot, with the solutions of the library that see it."""
     if not spot.blind:
         return SEEN[spot.code](spot.numbers)
-    seen_by = f" Seen by {', '.join(SEEN_BY[spot.code])}." if spot.code in SEEN_BY else ""
-    return unseen(spot) + seen_by
+    seers = (SEEN_BY_SOLID if solid(spot.numbers) else SEEN_BY).get(spot.code, ())
+    return unseen(spot) + (f" Seen by {', '.join(seers)}." if seers else "")
+
+
+def solid(n: Numbers) -> bool:
+    """Whether the solution has three dimensions."""
+    return n.get("dimension") == 3
 
 
 def unseen(spot: BlindSpot) -> str:
@@ -93,6 +108,8 @@ def no_walls(n: Numbers) -> str:
 def no_plane(n: Numbers) -> str:
     """Sentence on the component that is missing."""
     still = "one component of u" if n["weaker_component"] <= FAINT else "one component of the gradient"
+    if solid(n):
+        return f"Not all three dimensions take part: {still} is all but zero, so part of the code is not tested."
     return f"The problem is one-dimensional: {still} is all but zero, so half of the code is not tested."
 
 
@@ -130,7 +147,9 @@ BLIND: dict[BlindSpotCode, Words] = {
         f"The body starts {begins(n['start_velocity'], 'velocity')}, so wrong initial velocities are invisible."
     ),
     BlindSpotCode.MIRROR: lambda n: (
-        "The motion is its own mirror image in the diagonal X = Y, so x and y exchanged throughout is invisible."
+        "The motion is its own mirror image in a diagonal plane, so two axes exchanged throughout is invisible."
+        if solid(n)
+        else "The motion is its own mirror image in the diagonal X = Y, so x and y exchanged throughout is invisible."
     ),
     BlindSpotCode.AMPLITUDE: lambda n: (
         f"{amplitude(n)}: so small that ln J cannot be told from J {MINUS} 1, V0 from V, nor the position x from the "
@@ -138,7 +157,7 @@ BLIND: dict[BlindSpotCode, Words] = {
     ),
     BlindSpotCode.CROSSING: lambda n: (
         f"At {n['finest']:g} cells the largest displacement is {figure(n['finest'] * n['displacement'])} cells, so of "
-        "4 particles in a cell none crosses into another: what crossing does is invisible."
+        f"{8 if solid(n) else 4} particles in a cell none crosses into another: what crossing does is invisible."
     ),
     BlindSpotCode.WALLS: no_walls,
     BlindSpotCode.LOAD: lambda n: (
@@ -177,7 +196,9 @@ SEEN: dict[BlindSpotCode, Words] = {
     BlindSpotCode.VELOCITY: lambda n: (
         f"The body starts {begins(n['start_velocity'], 'velocity')}, so wrong initial velocities show."
     ),
-    BlindSpotCode.MIRROR: lambda n: "The motion is not the same in x and y, so axes that are exchanged show.",
+    BlindSpotCode.MIRROR: lambda n: (
+        f"The motion is not the same in x and y{', nor in z' * solid(n)}, so axes that are exchanged show."
+    ),
     BlindSpotCode.AMPLITUDE: lambda n: f"{amplitude(n)}.",
     BlindSpotCode.CROSSING: lambda n: (
         f"At N cells the largest displacement is {figure(n['displacement'])} N cells "
@@ -193,5 +214,9 @@ SEEN: dict[BlindSpotCode, Words] = {
         f"The divergence of the stress is {percent(n['stress_force'])} of the larger of body force and inertia: "
         "internal forces take part."
     ),
-    BlindSpotCode.PLANE: lambda n: "Both components move, and both x and y have gradients.",
+    BlindSpotCode.PLANE: lambda n: (
+        "All components move, and x, y and z have gradients."
+        if solid(n)
+        else "Both components move, and both x and y have gradients."
+    ),
 }  # fmt: skip

@@ -11,6 +11,7 @@ FOLDER = Path(__file__).absolute().parents[2] / "cases" / "mms" / "external" / "
 LANGUAGES = {  # what is typed beside --solver, and what it needs
     "python": "python {here}/solver.py {{case}} {{out}}",
     "numpy-class": "python {here}/adapter.py {{case}} {{out}}",
+    "python3d": "python {here}/solver.py {{case}} {{out}}",
     "cpp": "{here}/run.sh {{case}} {{out}}",
     "fortran": "{here}/run.sh {{case}} {{out}}",
     "julia": "julia {here}/solver.jl {{case}} {{out}}",
@@ -47,7 +48,8 @@ def example(
     with printing():
         typer.echo(f"{to}: {', '.join(sorted(file.name for file in to.iterdir()))}")
         command = LANGUAGES[language].format(here=here)
-        typer.echo(f"judge it with: verify mms --quick --solver '{command}' --as mpm --solution clamped_shear:G=1e-6")
+        first = "bump3d" if language.endswith("3d") else "clamped_shear:G=1e-6"
+        typer.echo(f"judge it with: verify mms --quick --solver '{command}' --as mpm --solution {first}")
 
 
 def add(app: typer.Typer) -> None:

@@ -1,6 +1,5 @@
 """`verify export SOLUTION`: a case folder for a solver of your own: particles, body force in nine languages, values."""
 
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -28,7 +27,13 @@ def export(
     ],
     to: Annotated[Path, typer.Option("--to", help="Folder, new or of an exported case.")],
     cells: Annotated[int, typer.Option(help="Cells along the width of the body.")] = 16,
-    ppc: Annotated[int, typer.Option(help="Particles per cell, a square number.")] = 4,
+    ppc: Annotated[
+        int | None,
+        typer.Option(
+            help="Particles per cell, a square number; of a solution in three dimensions a cube number.",
+            show_default="4, or 8",
+        ),
+    ] = None,
     material: Annotated[
         str | None,
         typer.Option(
@@ -46,6 +51,12 @@ def export(
             autocompletion=completing(lambda: PRECISIONS),
         ),
     ] = "double",
+    dim: Annotated[
+        int | None,
+        typer.Option(
+            help="Dimensions: with 3 a plane-strain solution is one cell thick.", show_default="the solution's own"
+        ),
+    ] = None,
 ) -> None:
     """Write a folder with all that another solver needs to be verified with a manufactured solution."""
     from mpm_verify.verify.run import check_count, usage
@@ -55,7 +66,7 @@ def export(
 
         check_count(frames, "--frames")
         usable(to)
-        case = made(solution, material, cells, ppc, courant, frames, precision)
+        case = made(solution, material, cells, ppc, courant, frames, dim, precision)
         written = write(to, case)
     with printing():
         typer.echo(f"{to}: {len(written)} files, {case.record.particles} particles, {case.record.steps} steps")
@@ -63,26 +74,38 @@ def export(
 
 
 def made(
-    solution: str, material: str | None, cells: int, ppc: int, courant: float, frames: int, precision: str = "double"
+    solution: str,
+    material: str | None,
+    cells: int,
+    ppc: int | None,
+    courant: float,
+    frames: int,
+    dim: int | None = None,
+    precision: str = "double",
 ) -> "Exported":
     """Content of a case, after the checks that a run of it has to pass. Raises ValueError."""
-    from mpm_verify.cases.mms.case import canonical, check
-    from mpm_verify.cases.mms.run import Run
+    from mpm_verify.cases.mms.case import canonical, check_solutions
+    from mpm_verify.cases.mms.run import SOLID, Run
+    from mpm_verify.mms.discretisation import dimension
     from mpm_verify.mms.export.case import Names, export
+    from mpm_verify.mms.export.slice import sliced
     from mpm_verify.solver.plugins import create
 
-    values = canonical({"solution": solution, "material": material or "", "precision": precision})
-    run = Run(**values, cells=cells, ppc=ppc, courant=courant)
+    asked = {"dim": dim} if dim is not None else {}
+    values = canonical({"solution": solution, "material": material or "", "precision": precision, **asked})
+    plugin = create(SOLUTIONS, values["solution"])
+    usual = Run.ppc if dimension(plugin) == 2 else SOLID["ppc"][0]
+    run = Run(**values, cells=cells, ppc=usual if ppc is None else ppc, courant=courant)
     if run.particles > MOST_PARTICLES:
         raise ValueError(f"{run.particles} particles are too many for a table; choose fewer cells or --ppc")
-    check([replace(run, precision=Run.precision)])  # that of the reference solver
-    plugin = create(SOLUTIONS, run.solution)
+    check_solutions([run])
+    names, model = Names(run.solution, run.material), create(MATERIALS, run.material)
     return export(
-        Names(run.solution, run.material),
-        plugin,
-        create(MATERIALS, run.material),
+        names,
+        sliced(plugin, run.dim, cells),
+        model,
         cells,
-        ppc,
+        run.ppc,
         courant,
         frames,
         precision=run.precision,  # type: ignore[arg-type]

@@ -13,7 +13,7 @@ import numpy as np
 from mpm_verify.cases.mms.digits.records import AGREES, Against, Parting
 from mpm_verify.cases.mms.digits.reference import Scheme
 from mpm_verify.cases.mms.external.answer import Frame
-from mpm_verify.cases.mms.external.errors import COMPONENTS
+from mpm_verify.cases.mms.external.components import WEIGHTS
 from mpm_verify.cases.mms.external.levels import Levels
 from mpm_verify.mms.manufacture import Manufactured
 from mpm_verify.solver.state import Floats
@@ -50,7 +50,7 @@ def errors(exact: Manufactured, X: Floats, dt: float, frames: Mapping[int, Frame
         key = "x" if quantity == "u" else quantity
         if all(key in frame.fields for frame in frames.values()):
             truth = exact.x if quantity == "u" else getattr(exact, quantity)
-            weight = np.sqrt(COMPONENTS.get(quantity, 1.0))
+            weight = np.sqrt(WEIGHTS[4]) if quantity == "sigma" else 1.0
             found[quantity] = np.stack([
                 weight * (frame.fields[key] - truth(X, (step - lag) * dt).reshape(len(X), -1))
                 for step, frame in sorted(frames.items())

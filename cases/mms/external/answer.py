@@ -1,7 +1,8 @@
 """Answer of somebody else's solver: files of frames, matched to the particles of the case.
 
 result_<step>.csv (or .tsv, .npz, .vtu) has a row a particle, in any order: `id`, or the reference position `X`, `Y`;
-`x`, `y`; and any of `vx vy`, `Fxx Fxy Fyx Fyy`, `sxx syy szz sxy`. result.json says which time level a field has.
+`x`, `y`; and any of `vx vy`, `Fxx Fxy Fyx Fyy`, `sxx syy szz sxy`. In three dimensions there are `Z`, `z`, `vz`, nine
+components of F, and `syz sxz`. result.json says which time level a field has.
 """
 
 from dataclasses import dataclass, field
@@ -13,6 +14,7 @@ import numpy as np
 from mpm_verify.cases.mms.external.components import QUANTITIES
 from mpm_verify.cases.mms.external.digits import rounding
 from mpm_verify.cases.mms.external.matching import matched
+from mpm_verify.cases.mms.external.precision import single
 from mpm_verify.cases.mms.external.readers import ENDINGS, table
 from mpm_verify.solver.failure import FailureKind, RunFailed
 from mpm_verify.solver.state import Floats
@@ -20,7 +22,7 @@ from mpm_verify.solver.state import Floats
 
 @dataclass(frozen=True)
 class Frame:
-    """Frame: x (P,2) and what else there is of v (P,2), F (P,4), sigma (P,4), X (P,2) and volume V (P,1).
+    """Frame: x (P,d) and what else there is of v (P,d), F (P,d*d), sigma (P,4 or 6), X (P,d) and volume V (P,1).
 
     Rows are in the order of the case.
 
@@ -41,7 +43,7 @@ def read(out: Path, step: int, X: Floats, spacing: float) -> Frame:
     step
         Number of the step.
     X
-        Reference positions (P,2) of the case.
+        Reference positions (P,d) of the case.
     spacing
         Distance of particles, a length.
 
@@ -64,7 +66,8 @@ def read(out: Path, step: int, X: Floats, spacing: float) -> Frame:
 def framed(
     columns: dict[str, Any], X: Floats, spacing: float, file: str, step: int, digits: dict[str, float] | None = None
 ) -> Frame:
-    """Frame of columns, in the order of X (P,2), whose rounding is `digits` or told as they are. Raises RunFailed."""
+    """Frame of columns, in the order of X (P,d), whose rounding is `digits` or told as they are. Raises RunFailed."""
+    quantities = QUANTITIES[X.shape[1]]
     try:
         numbers = {name: np.asarray(values, dtype=np.float64) for name, values in columns.items()}
         resolution = rounding(columns) if digits is None else digits
@@ -72,12 +75,12 @@ def framed(
         raise RunFailed(FailureKind.UNREADABLE, step, names={"file": file}) from None
     if len({len(values) for values in numbers.values()}) > 1 or not numbers:
         raise RunFailed(FailureKind.UNREADABLE, step, names={"file": file})
-    for name in QUANTITIES["x"]:
+    for name in quantities["x"]:
         if name not in numbers:
             raise RunFailed(FailureKind.NO_COLUMN, step, names={"file": file, "column": name})
     order = matched(numbers, X, spacing, file, step)
     found, sizes = {}, {}
-    for quantity, names in QUANTITIES.items():
+    for quantity, names in quantities.items():
         if not all(name in numbers for name in names):
             continue
         values = np.stack([numbers[name] for name in names], axis=-1)[order]
@@ -85,5 +88,6 @@ def framed(
             particle = int(np.argwhere(~np.isfinite(values).all(axis=1))[0, 0])
             raise RunFailed(FailureKind.NOT_FINITE, step, particle, names={"file": file})
         found[quantity] = values
-        sizes[quantity] = float(np.sqrt(sum(resolution.get(name, 0.0) ** 2 for name in names)))
+        told = float(np.sqrt(sum(resolution.get(name, 0.0) ** 2 for name in names)))
+        sizes[quantity] = max(told, single(values))
     return Frame(found, sizes)

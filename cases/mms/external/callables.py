@@ -11,8 +11,9 @@ import numpy as np
 
 from mpm_verify.cases.mms.external.answer import Frame, framed
 from mpm_verify.cases.mms.external.command import PYTHON
-from mpm_verify.cases.mms.external.components import spread
+from mpm_verify.cases.mms.external.components import QUANTITIES, spread
 from mpm_verify.cases.mms.external.levels import Levels, stated
+from mpm_verify.mms.components import AXES
 from mpm_verify.mms.export.record import CaseRecord
 from mpm_verify.solver.failure import FailureKind, RunFailed
 from mpm_verify.solver.own_file import shortened
@@ -33,7 +34,7 @@ class Case:
     particles
         Columns (P,) of particles.csv by name.
     body_force
-        Function (X, t) of reference positions (n,2) and a time: force per mass (n,2).
+        Function (X, t) of reference positions (n,d) and a time: force per mass (n,d).
     """
 
     record: CaseRecord
@@ -41,11 +42,11 @@ class Case:
     body_force: Callable[[Floats, float], Floats]
 
     def array(self, name: str, after: str = "") -> Floats:
-        """Array of a field by its letter: X, x, v (P,2), F (P,2,2), s (P,4); `after` is _half or _before."""
-        ends = {"F": ("xx", "xy", "yx", "yy"), "s": ("xx", "yy", "zz", "xy")}.get(name, ("x", "y"))
-        names = {"X": ("X", "Y"), "x": ("x", "y")}.get(name, tuple(f"{name}{end}{after}" for end in ends))
-        values = np.stack([self.particles[one] for one in names], axis=-1)
-        return values.reshape(-1, 2, 2) if name == "F" else values
+        """Array of a field by its letter: X, x, v (P,d), F (P,d,d), s (P,4 or 6); `after` is _half or _before."""
+        d = self.record.dimension
+        names = {**QUANTITIES[d], "s": QUANTITIES[d]["sigma"], "X": tuple(AXES[:d].upper())}[name]
+        values = np.stack([self.particles[f"{one}{after}"] for one in names], axis=-1)
+        return values.reshape(-1, d, d) if name == "F" else values
 
 
 def register(function: Callable[[Case], Any]) -> str:

@@ -26,7 +26,7 @@ FORMATS: dict[str, Format] = {
 NUMBERS = {"step": 1, "time": 0.5, "index": 1}  # what a name of a file may hold, with an example of each
 NUMBERED = ("pvd", "lammps")  # formats whose files say which frame is which
 KEEPS = "row"  # id of rows in the order of the particles
-NAMES = ("id", *dict.fromkeys(name for q, parts in QUANTITIES.items() for name in (q, *parts)))
+NAMES = ("id", *dict.fromkeys(name for d in (2, 3) for q, parts in QUANTITIES[d].items() for name in (q, *parts)))
 
 
 def lag(value: float) -> float:
@@ -41,12 +41,12 @@ Strict = ConfigDict(extra="forbid", frozen=True, strict=True)
 
 
 class Column(BaseModel):
-    """Column of ours: factor times a column of theirs, plus a number, or plus the reference position `X` or `Y`."""
+    """Column of ours: factor times a column of theirs, plus a number, or plus a reference position `X`, `Y` or `Z`."""
 
     model_config = Strict
     name: str = Field(alias="from", min_length=1)
     factor: float = 1.0
-    add: float | Literal["X", "Y"] = 0.0
+    add: float | Literal["X", "Y", "Z"] = 0.0
 
 
 def named(value: Any) -> Any:

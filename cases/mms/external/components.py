@@ -1,33 +1,51 @@
-"""Components of the fields of an answer: names of their columns, and arrays of all components taken apart."""
+"""Components of the fields of an answer, in two dimensions and in three, by the names of their columns."""
 
 from typing import Any
 
-QUANTITIES = {
-    "x": ("x", "y"),
-    "v": ("vx", "vy"),
-    "F": ("Fxx", "Fxy", "Fyx", "Fyy"),
-    "sigma": ("sxx", "syy", "szz", "sxy"),
-    "X": ("X", "Y"),
-    "V": ("V",),
+import numpy as np
+
+from mpm_verify.mms.components import AXES, COMPONENTS
+from mpm_verify.solver.state import Floats
+
+
+def quantities(dimension: int) -> dict[str, tuple[str, ...]]:
+    """Columns of x, v, F row by row, sigma, X and the volume."""
+    axes = AXES[:dimension]
+    return {
+        "x": tuple(axes),
+        "v": tuple(f"v{a}" for a in axes),
+        "F": tuple(f"F{a}{b}" for a in axes for b in axes),
+        "sigma": tuple(f"s{end}" for end in COMPONENTS[dimension]),
+        "X": tuple(axes.upper()),
+        "V": ("V",),
+    }
+
+
+QUANTITIES = {dimension: quantities(dimension) for dimension in (2, 3)}
+NAMES = {  # of an array with all components, by its name and their number
+    (name, len(parts)): parts for dimension in (2, 3) for name, parts in QUANTITIES[dimension].items()
 }
+UPPER = (0, 4, 8, 1, 5, 2)  # components of a symmetric tensor with nine, in the order of COMPONENTS
+WEIGHTS = {4: np.array([1.0, 1.0, 1.0, 2.0]), 6: np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])}  # of a sum of squares
+
+
+def reference(columns: dict[str, Floats], dimension: int) -> Floats:
+    """Reference positions (P,d) of columns of particles."""
+    return np.stack([columns[axis] for axis in AXES[:dimension].upper()], axis=-1)
 
 
 def spread(stored: dict[str, Any]) -> dict[str, Any]:
-    """Columns of arrays by name; X, x, v, F and sigma may hold all their components."""
+    """Columns of arrays by name; X, x, v, F and sigma may hold all their components. Raises ValueError."""
     found: dict[str, Any] = {}
     for name, values in stored.items():
-        parts = QUANTITIES.get(name)
-        if parts is None or values.ndim == 1:
+        if values.ndim == 1 or name not in {one for one, _ in NAMES}:
             found[name] = values
             continue
         flat = values.reshape(len(values), -1)
-        if name == "F" and flat.shape[1] == 9:
-            flat = flat[:, (0, 1, 3, 4)]
-        elif name == "sigma" and flat.shape[1] == 9:
-            flat = flat[:, (0, 4, 8, 1)]
-        elif flat.shape[1] == 3 and len(parts) == 2:
-            flat = flat[:, :2]
-        if flat.shape[1] != len(parts):
+        if name == "sigma" and flat.shape[1] == 9:
+            flat = flat[:, UPPER]
+        if (name, flat.shape[1]) not in NAMES:
             raise ValueError(name)
+        parts = NAMES[name, flat.shape[1]]
         found |= {part: flat[:, k] for k, part in enumerate(parts)}
     return found

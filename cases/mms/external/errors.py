@@ -9,11 +9,10 @@ from math import sqrt
 import numpy as np
 
 from mpm_verify.cases.mms.external.answer import Frame
+from mpm_verify.cases.mms.external.components import WEIGHTS
 from mpm_verify.cases.mms.external.levels import Levels
 from mpm_verify.mms.manufacture import Manufactured
 from mpm_verify.solver.state import Floats
-
-COMPONENTS = {"sigma": np.array([1.0, 1.0, 1.0, 2.0])}  # xy counts twice
 
 
 @dataclass(frozen=True)
@@ -33,7 +32,7 @@ def compare(exact: Manufactured, X: Floats, V0: Floats, dt: float, frames: dict[
     exact
         Exact fields.
     X, V0
-        Reference positions (P,2) and volumes (P,) of the particles.
+        Reference positions (P,d) and volumes (P,) of the particles.
     dt
         Length of a time step.
     frames
@@ -59,10 +58,11 @@ def compare(exact: Manufactured, X: Floats, V0: Floats, dt: float, frames: dict[
         for step, frame in frames.items():
             truth = getattr(exact, quantity)(X, (step - lag) * dt).reshape(len(X), -1)
             given = frame.fields[key] - X if quantity == "u" else frame.fields[key]
-            square = (COMPONENTS.get(quantity, 1.0) * (given - truth) ** 2).sum(axis=1)
+            counted = WEIGHTS[truth.shape[1]] if quantity == "sigma" else 1.0  # a shear counts twice
+            square = (counted * (given - truth) ** 2).sum(axis=1)
             squares.append(float((weight * square).mean()))
             largest.append(float(square.max()))
-            sizes.append(float((weight * (COMPONENTS.get(quantity, 1.0) * truth**2).sum(axis=1)).mean()))
+            sizes.append(float((weight * (counted * truth**2).sum(axis=1)).mean()))
             rounding.append(frame.resolution.get(key, 0.0))
             final = sqrt(squares[-1]) if step == last else final
         rms = sqrt(np.mean(squares))

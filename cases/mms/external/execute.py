@@ -5,7 +5,6 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache
-from math import sqrt
 from pathlib import Path
 
 import numpy as np
@@ -17,16 +16,20 @@ from mpm_verify.cases.mms.external.answer import Frame, read
 from mpm_verify.cases.mms.external.callables import Case, called
 from mpm_verify.cases.mms.external.column_map import parsed
 from mpm_verify.cases.mms.external.command import PYTHON, filled
+from mpm_verify.cases.mms.external.components import reference
 from mpm_verify.cases.mms.external.errors import Found, compare
 from mpm_verify.cases.mms.external.hints import hints
 from mpm_verify.cases.mms.external.levels import USUAL, Levels, levels
 from mpm_verify.cases.mms.external.mapped import read as read_mapped
 from mpm_verify.cases.mms.run import Result, Run
+from mpm_verify.mms.discretisation import dimension
 from mpm_verify.mms.export.case import Exported, Names, export
 from mpm_verify.mms.export.files import files
 from mpm_verify.mms.export.process import Ended
 from mpm_verify.mms.export.process import run as run_program
+from mpm_verify.mms.export.slice import sliced
 from mpm_verify.mms.export.start import named
+from mpm_verify.mms.manufacture import Manufactured, manufacture
 from mpm_verify.solver.failure import Failure, FailureKind, RunFailed
 from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS, create
 from mpm_verify.solver.state import Floats
@@ -54,7 +57,7 @@ def execute(run: Run, tick: Callable[[float], None] = lambda fraction: None) -> 
     answer = answered(run, case, tick)
     found, why = Found({}, {}, {}), dict[str, float]()
     if answer.frames:
-        exact, X, dt = manufactured(run.solution, run.material), positions(case), case.record.dt
+        exact, X, dt = exact_of(run), positions(case), case.record.dt
         found = compare(exact, X, case.particles["V0"], dt, answer.frames, answer.told)
         if not run.start:  # other time levels by force are told as a whole
             why = hints(exact, case, answer.frames, answer.told)
@@ -97,21 +100,21 @@ def by_command(run: Run, case: Exported, tick: Callable[[float], None]) -> Answe
 
 def in_process(run: Run, case: Exported) -> Answer:
     """Answer of a Python function."""
-    exact, failure, frames, told = manufactured(run.solution, run.material), None, dict[int, Frame](), Levels()
+    exact, failure, frames, told = exact_of(run), None, dict[int, Frame](), Levels()
     started = time.perf_counter()
     try:
         start = named(run.start)
         force = start.force(exact.b, case.record.dt) if start else exact.b
         given = Case(case.record, case.particles, force)
-        frames, told = called(run.solver, given, positions(case), case.record.dx / sqrt(run.ppc))
+        frames, told = called(run.solver, given, positions(case), spacing(case))
     except RunFailed as error:
         failure = error.failure
     return Answer(frames, told, failure, time.perf_counter() - started)
 
 
 def positions(case: Exported) -> Floats:
-    """Reference positions (P,2) of the particles of a case."""
-    return np.stack([case.particles["X"], case.particles["Y"]], axis=-1)
+    """Reference positions (P,d) of the particles of a case."""
+    return reference(case.particles, case.record.dimension)
 
 
 def check(ended: Ended, seconds: float, log: tuple[str, ...]) -> None:
@@ -126,7 +129,8 @@ def check(ended: Ended, seconds: float, log: tuple[str, ...]) -> None:
 @cache
 def exported(run: Run) -> Exported:
     """Content of the case folder."""
-    solution, material = create(SOLUTIONS, run.solution), create(MATERIALS, run.material)
+    solution = sliced(create(SOLUTIONS, run.solution), run.dim, run.cells)
+    material = create(MATERIALS, run.material)
     names = Names(run.solution, run.material)
     return export(
         names,
@@ -142,12 +146,26 @@ def exported(run: Run) -> Exported:
     )
 
 
+@cache
+def exact_of(run: Run) -> Manufactured:
+    """Exact solution in as many dimensions as the case has."""
+    solution, material = create(SOLUTIONS, run.solution), create(MATERIALS, run.material)
+    if dimension(solution) == run.dim:
+        return manufactured(run.solution, run.material)
+    return manufacture(sliced(solution, run.dim, run.cells), material, material.rho0)
+
+
+def spacing(case: Exported) -> float:
+    """Distance of particles at reference, a length."""
+    return float(case.record.dx * case.record.ppc ** (-1 / case.record.dimension))
+
+
 def frames_of(run: Run, case: Exported, out: Path) -> dict[int, Frame]:
     """Frames that a program has written, by step. Raises RunFailed for what is missing or cannot be read."""
-    X, spacing, steps = positions(case), case.record.dx / sqrt(run.ppc), case.record.frames
+    X, steps = positions(case), case.record.frames
     if run.columns:
-        return read_mapped(out, parsed(run.columns), steps, case.record.dt, X, spacing)
-    return {step: read(out, step, X, spacing) for step in steps}
+        return read_mapped(out, parsed(run.columns), steps, case.record.dt, X, spacing(case))
+    return {step: read(out, step, X, spacing(case)) for step in steps}
 
 
 def result_of(run: Run, case: Exported, found: Found, failure: Failure | None) -> Result:

@@ -15,6 +15,7 @@ from mpm_verify.cases.mms.external.digits import rounding
 from mpm_verify.cases.mms.external.many import Frames, frames, split
 from mpm_verify.cases.mms.external.matching import matched
 from mpm_verify.cases.mms.external.readers import Columns
+from mpm_verify.mms.components import AXES
 from mpm_verify.solver.failure import FailureKind, RunFailed
 from mpm_verify.solver.state import Floats
 
@@ -34,7 +35,7 @@ def read(out: Path, given: ColumnMap, steps: Sequence[int], dt: float, X: Floats
     steps, dt
         Numbers of the steps, and the length of one.
     X
-        Reference positions (P,2) of the case.
+        Reference positions (P,d) of the case.
     spacing
         Distance of particles, a length.
 
@@ -96,7 +97,7 @@ def chosen(here: list[Any], given: ColumnMap, numbers: dict[str, Any], dt: float
 
 
 def translated(columns: Columns, given: ColumnMap, X: Floats, spacing: float, file: str, step: int) -> Frame:
-    """Frame of their columns, in the order of X (P,2). Raises RunFailed."""
+    """Frame of their columns, in the order of X (P,d). Raises RunFailed."""
     written: dict[str, Any] = {}
     for ours, column in given.columns.items():
         try:
@@ -114,7 +115,11 @@ def translated(columns: Columns, given: ColumnMap, X: Floats, spacing: float, fi
     except (ValueError, TypeError):
         raise RunFailed(FailureKind.UNREADABLE, step, names={"file": file}) from None
     digits = {name: size * abs(written[name][1].factor) for name, size in digits.items()}
-    moved = {name: X[:, k] for k, name in enumerate("xy") if name in written and isinstance(written[name][1].add, str)}
+    moved = {
+        name: X[:, k]
+        for k, name in enumerate(AXES[: X.shape[1]])
+        if name in written and isinstance(written[name][1].add, str)
+    }
     if moved and len({len(values) for values in numbers.values()}) == 1:
         order = matched(numbers, X, spacing, file, step)
         numbers = {name: values[order] + moved.get(name, 0.0) for name, values in numbers.items()}

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from mpm_verify.mms.components import AXES
 from mpm_verify.solver.failure import FailureKind, RunFailed
 from mpm_verify.solver.state import Floats
 
@@ -24,11 +25,12 @@ def matched(columns: dict[str, Floats], X: Floats, spacing: float, file: str, st
             same = len(np.unique(given[np.isin(given, np.arange(len(X)))]))
             raise others(same, len(X), file, step)
         return order
-    if not {"X", "Y"} <= columns.keys():
+    axes = AXES[: X.shape[1]].upper()
+    if not set(axes) <= columns.keys():
         raise RunFailed(FailureKind.NO_COLUMN, step, names={"file": file, "column": "id"})
     from scipy.spatial import cKDTree
 
-    given = np.stack([columns["X"], columns["Y"]], axis=-1)
+    given = np.stack([columns[axis] for axis in axes], axis=-1)
     if not np.isfinite(given).all():
         raise RunFailed(FailureKind.NOT_FINITE, step, names={"file": file})
     distance, order = cKDTree(given).query(X)
