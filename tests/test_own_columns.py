@@ -336,7 +336,7 @@ MISTAKES = {
     "no columns": ('files = "p{step}.csv"', "a table [columns]"),
     "a key that is none": ("zone = 1\n" + OK, "the map has 'zone', and may have files, format"),
     "a near one": ('f_order = "row"\n' + OK, "did you mean F_order?"),
-    "a column that is none": (OK + 'vz = "vz"', "[columns] has 'vz'"),
+    "a column that is none": (OK + 'vw = "vw"', "[columns] has 'vw'"),
     "no x": ('files = "p{step}.csv"\n[columns]\nid = "id"\ny = "y"', "[columns] has no x"),
     "no id": ('files = "p{step}.csv"\n[columns]\nx = "x"\ny = "y"', 'id = "row" where rows keep the order'),
     "a factor in words": (OK + 'vx = {from = "v", factor = "two"}', "columns.vx.factor = 'two'"),

@@ -1,6 +1,7 @@
 """Answers of solvers of three dimensions: read in every form, judged, hinted at; single precision; the toy's digits."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -10,11 +11,13 @@ import pytest
 from fixtures_command import Call, caller
 
 import mpm_verify as mv
-from mpm_verify.cases.mms.external.answer import Frame, Levels, read
+from mpm_verify.cases.mms.external.answer import Frame, read
 from mpm_verify.cases.mms.external.callables import Case
 from mpm_verify.cases.mms.external.errors import compare
 from mpm_verify.cases.mms.external.hints import hints
+from mpm_verify.cases.mms.external.levels import Levels
 from mpm_verify.mms.components import COMPONENTS
+from mpm_verify.mms.export.case import Names, export
 from mpm_verify.mms.manufacture import Manufactured, manufacture
 from mpm_verify.solver.failure import FailureKind, RunFailed
 from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS, create
@@ -129,15 +132,21 @@ def test_an_answer_of_two_dimensions_is_not_one_of_three(tmp_path: Path) -> None
     ("name", "change"),
     [
         ("F_transposed", lambda F: F.transpose(0, 2, 1)),
-        ("F_twice", lambda F: 2 * F - np.eye(3)),
+        ("F_twice", lambda F: F @ F),
+        ("sigma_sign", lambda F: F),
+        ("", lambda F: F),
     ],
 )
 def test_a_fault_is_hinted_at(name: str, change: Callable[[Floats], Floats]) -> None:
+    """And none where there is none. With F wrong, sigma is told by the answer's own displacements."""
     frames = {}
     for step in STEPS:
-        fields = {**parts(rows(step)), "sigma": rows(step)[:, 19:]}
+        fields = {**parts(rows(step)), "sigma": (-1 if name == "sigma_sign" else 1) * rows(step)[:, 19:]}
         frames[step] = Frame({**fields, "F": change(fields["F"]).reshape(-1, 9)})
-    assert hints(exact(), X, DT, frames, USUAL) == {name: pytest.approx(0.0, abs=1e-9)}
+    case = export(Names("bump3d:A=0.05", "neo_hookean"), SOLUTION, LAW, 4, 8, checked=False)
+    found = hints(exact(), replace(case, record=replace(case.record, dt=DT)), frames, USUAL)
+    assert found.keys() == ({name} if name else set())
+    assert found.get("sigma_sign", -1.0) == pytest.approx(-1.0, abs=1e-6)
 
 
 # ---- single precision

@@ -14,6 +14,8 @@ EXACT = 1e-5  # mismatch of stress and volume, relative to their own change, tha
 CLOSE, ROUGH = 0.02, 0.25  # of a factor, of F as it is written and of the answer's own displacements
 LATE = 0.25  # steps: of a lag that is told
 
+PLANE = (0, 1, 3)  # components in the plane
+
 Advance = Callable[[Floats, Floats], Floats]
 ADVANCED: dict[str, Advance] = {  # F from the step A = F_own F_before^-1 and the F before
     "F_twice": lambda A, F: A @ A @ F,
@@ -108,9 +110,11 @@ def named(e: Evidence, factor: float) -> dict[str, float]:
 
 
 def mean_factor(given: Floats, meant: Floats) -> tuple[float, float] | None:
-    """Factor on the mean stress in the plane, and what it leaves, where the rest of the stress is as it should be."""
-    mean, rest = (0.5 * (meant[..., 0] + meant[..., 1]), meant[..., (0, 1, 3)].copy())
-    own, other = 0.5 * (given[..., 0] + given[..., 1]), given[..., (0, 1, 3)].copy()
+    """Factor on the mean stress in the plane, and what it leaves, where the rest of it is right. None in 3-D."""
+    if meant.shape[-1] != 4:
+        return None
+    mean, rest = (0.5 * (meant[..., 0] + meant[..., 1]), meant[..., PLANE].copy())
+    own, other = 0.5 * (given[..., 0] + given[..., 1]), given[..., PLANE].copy()
     rest[..., :2] -= mean[..., None]
     other[..., :2] -= own[..., None]
     size, shear = float(np.sum(mean**2)), float(np.sum(rest**2))
@@ -122,10 +126,10 @@ def mean_factor(given: Floats, meant: Floats) -> tuple[float, float] | None:
 
 
 def inner(one: Floats, other: Floats) -> float:
-    """Sum of products of all components in the plane."""
-    return float(np.sum((one * other)[..., (0, 1, 3)]))
+    """Sum of products of all components, in two dimensions of those in the plane."""
+    return float(np.sum((one * other)[..., PLANE if one.shape[-1] == 4 else slice(None)]))
 
 
 def norm(values: Floats) -> float:
-    """Norm of all components in the plane."""
+    """Norm of all components, in two dimensions of those in the plane."""
     return float(np.sqrt(inner(values, values)))

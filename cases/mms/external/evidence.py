@@ -9,12 +9,14 @@ from scipy.sparse import csr_matrix
 from scipy.spatial import cKDTree
 
 from mpm_verify.cases.mms.external.answer import Frame
+from mpm_verify.cases.mms.external.components import reference
 from mpm_verify.cases.mms.external.levels import Levels
+from mpm_verify.mms.components import AXES, COMPONENTS
 from mpm_verify.mms.export.case import Exported
 from mpm_verify.mms.manufacture import Manufactured
 from mpm_verify.solver.state import Floats
 
-SUPPORT = 12  # particles that a gradient is fitted to, six coefficients each
+SUPPORT = {2: 12, 3: 32}  # particles that a gradient is fitted to, six coefficients each, or ten in three dimensions
 STEP = 1e-30  # of a complex step
 
 
@@ -41,8 +43,13 @@ class Evidence:
 
     @cached_property
     def X(self) -> Floats:
-        """Reference positions (P,2)."""
-        return np.stack([self.case.particles["X"], self.case.particles["Y"]], axis=-1)
+        """Reference positions (P,d)."""
+        return reference(self.case.particles, self.case.record.dimension)
+
+    @property
+    def d(self) -> int:
+        """Number of dimensions."""
+        return self.case.record.dimension
 
     @property
     def V0(self) -> Floats:
@@ -74,50 +81,55 @@ class Evidence:
 
     @cached_property
     def u(self) -> Floats:
-        """Displacements of the answer (1+K,P,2); that of the start is the exact one."""
+        """Displacements of the answer (1+K,P,d); that of the start is the exact one."""
         return np.concatenate([self.exact.u(self.X, 0.0)[None], self.given("x") - self.X])
 
     @cached_property
     def u_exact(self) -> Floats:
-        """Exact displacements (1+K,P,2)."""
+        """Exact displacements (1+K,P,d)."""
         return np.stack([self.exact.u(self.X, t) for t in self.times])
 
     @cached_property
     def F_exact(self) -> Floats:
-        """Exact deformation gradients (1+K,P,2,2)."""
+        """Exact deformation gradients (1+K,P,d,d)."""
         return np.stack([self.exact.F(self.X, t) for t in self.times])
 
     @cached_property
     def F_own(self) -> Floats:
-        """Deformation gradients (1+K,P,2,2) of the answer's own displacements.
+        """Deformation gradients (1+K,P,d,d) of the answer's own displacements.
 
         What the same operator misses of the exact displacements is taken off.
         """
-        missed = np.eye(2) + self.gradient(self.u_exact) - self.F_exact
-        return np.eye(2) + self.gradient(self.u) - missed
+        missed = np.eye(self.d) + self.gradient(self.u_exact) - self.F_exact
+        return np.eye(self.d) + self.gradient(self.u) - missed
 
     @cached_property
     def F_given(self) -> Floats:
-        """Deformation gradients (1+K,P,2,2) as they were written; that of the start is the exact one."""
-        return np.concatenate([self.F_exact[:1], self.given("F").reshape(-1, len(self.X), 2, 2)])
+        """Deformation gradients (1+K,P,d,d) as they were written; that of the start is the exact one."""
+        return np.concatenate([self.F_exact[:1], self.given("F").reshape(-1, len(self.X), self.d, self.d)])
 
     @cached_property
-    def operators(self) -> tuple[Any, Any]:
-        """Sparse matrices (P,P) of the derivatives by X and Y: a parabola is fitted to the particles around each."""
-        X = self.X
-        size = np.sqrt(np.ptp(X[:, 0]) * np.ptp(X[:, 1]) / len(X))
-        _, near = cKDTree(X).query(X, SUPPORT)
-        a, b = np.moveaxis((X[near] - X[:, None]) / size, -1, 0)
-        A = np.stack([np.ones_like(a), a, b, a * a, a * b, b * b], axis=-1)
-        fit = np.linalg.solve(A.swapaxes(1, 2) @ A, A.swapaxes(1, 2))
-        rows = np.repeat(np.arange(len(X)), SUPPORT)
-        found = [csr_matrix(((fit[:, k] / size).ravel(), (rows, near.ravel())), (len(X), len(X))) for k in (1, 2)]
-        return found[0], found[1]
+    def operators(self) -> tuple[Any, ...]:
+        """Sparse matrices (P,P) of the derivatives by X: a parabola is fitted to the particles around each.
+
+        Where there are too few layers for one in some direction, as in a slice, it is flat there.
+        """
+        X, count = self.X, min(SUPPORT[self.d], len(self.X))
+        size = float(np.prod(np.ptp(X, axis=0)) / len(X)) ** (1 / self.d)
+        _, near = cKDTree(X).query(X, count)
+        a = np.moveaxis((X[near] - X[:, None]) / size, -1, 0)
+        second = [a[i] * a[j] for i in range(self.d) for j in range(i, self.d)]
+        A = np.stack([np.ones_like(a[0]), *a, *second], axis=-1)
+        fit = np.linalg.pinv(A)
+        rows = np.repeat(np.arange(len(X)), count)
+        return tuple(
+            csr_matrix(((fit[:, k + 1] / size).ravel(), (rows, near.ravel())), (len(X), len(X))) for k in range(self.d)
+        )
 
     def gradient(self, u: Floats) -> Floats:
-        """Gradients (...,P,2,2) of vectors (...,P,2), rows the components of the vector."""
+        """Gradients (...,P,d,d) of vectors (...,P,d), rows the components of the vector."""
         flat = np.moveaxis(u, -2, 0).reshape(len(self.X), -1)
-        shape = (len(self.X), *u.shape[:-2], 2)
+        shape = (len(self.X), *u.shape[:-2], self.d)
         parts = [np.moveaxis((one @ flat).reshape(shape), 0, -2) for one in self.operators]
         return np.stack(parts, axis=-1)
 
@@ -125,35 +137,38 @@ class Evidence:
     def stressed(self) -> bool:
         """Whether the material's energy can be derived by complex numbers; one of a user's file may not take them."""
         try:
-            return bool(np.isfinite(self.piola(np.eye(2)[None])).all())
+            return bool(np.isfinite(self.piola(np.eye(self.d)[None])).all())
         except Exception:  # of a user's code
             return False
 
     def piola(self, F: Floats) -> Floats:
-        """First Piola stress (...,2,2) that the material has under F (...,2,2), in plane strain."""
+        """First Piola stress (...,d,d) that the material has under F (...,d,d), of two dimensions in plane strain."""
         return derivative(self.exact.material, F)[0]
 
     def sigma(self, F: Floats) -> Floats:
-        """Cauchy stress xx, yy, zz, xy (...,4) that the material has under F (...,2,2)."""
+        """Cauchy stress (...,4 or 6) that the material has under F (...,d,d), in the order of mms/components.py."""
         P, Pzz = derivative(self.exact.material, F)
         J = np.linalg.det(F)[..., None]
         s = P @ F.swapaxes(-1, -2)
-        found: Floats = np.stack([s[..., 0, 0], s[..., 1, 1], Pzz, s[..., 0, 1]], axis=-1) / J
+        parts = [Pzz if part == "zz" and self.d == 2 else s[..., AXES.index(part[0]), AXES.index(part[1])]
+                 for part in COMPONENTS[self.d]]  # fmt: skip
+        found: Floats = np.stack(parts, axis=-1) / J
         return found
 
 
 def derivative(material: Any, F: Floats) -> tuple[Floats, Floats]:
-    """First Piola stress (...,2,2) and its zz (...) in plane strain: derivative of the energy, by complex steps."""
-    flat = F.reshape(-1, 2, 2)
-    P, Pzz = np.empty(flat.shape), np.empty(len(flat))
-    for i, j in ((0, 0), (0, 1), (1, 0), (1, 1), (2, 2)):
+    """First Piola stress (...,d,d), and its zz (...) of plane strain: derivative of the energy, by complex steps."""
+    d = F.shape[-1]
+    flat = F.reshape(-1, d, d)
+    P, Pzz = np.empty(flat.shape), np.zeros(len(flat))
+    for i, j in [(i, j) for i in range(d) for j in range(d)] + [(2, 2)] * (d == 2):
         full: list[list[Any]] = [[complex(a == b) for b in range(3)] for a in range(3)]
-        for a in range(2):
-            for b in range(2):
+        for a in range(d):
+            for b in range(d):
                 full[a][b] = flat[:, a, b].astype(complex)
         full[i][j] = full[i][j] + 1j * STEP
         slope = np.imag(material.energy(full, np.log)) / STEP
-        if i == 2:
+        if i == d:
             Pzz[:] = slope
         else:
             P[:, i, j] = slope

@@ -44,7 +44,7 @@ def hints(exact: Manufactured, case: Exported, frames: dict[int, Frame], levels:
         explains half of anything, as of a sound answer.
     """
     e = Evidence(exact, case, frames, levels)
-    if case.record.dimension != 2 or np.abs(e.u).max() > FAR * np.ptp(e.X):
+    if np.abs(e.u).max() > FAR * np.ptp(e.X):
         return {}
     with np.errstate(all="ignore"):
         return explained(e)

@@ -27,6 +27,7 @@ NEARLY = 0.25  # from 1, of a term that is there or not; from a half, of half a 
 TIE = 1.05  # factor within which two candidates leave the same of the balance
 SINGLE = 0.01  # of the error of u: rounding of single precision that is told
 ROUND = 1e-14  # of the body's width: an error that is none
+SIDES = (("left", "right"), ("bottom", "top"), ("back", "front"))
 MANY = 20  # numbers with more digits than a lattice has
 
 
@@ -52,7 +53,7 @@ def order(e: Evidence) -> dict[str, float]:
     """Particles that fit when they are matched otherwise: by the X that is written, or by where they are."""
     step, frame = next(iter(e.frames.items()))
     x, exact = frame.fields["x"], e.exact.x(e.X, step * e.dt)
-    error, spacing = rms(x - exact), sqrt(float(np.mean(e.V0)))
+    error, spacing = rms(x - exact), float(np.mean(e.V0)) ** (1 / e.d)
     if "X" in frame.fields:
         apart = np.abs(frame.fields["X"] - e.X).max(axis=1) > NEAR * spacing
         other = cKDTree(e.X).query(frame.fields["X"])[1]
@@ -113,8 +114,8 @@ def walls(e: Evidence) -> dict[str, float]:
 def next_to_walls(e: Evidence) -> tuple[Bools, Indices]:
     """Whether a particle is in a cell next to a wall (P,), and the axis of the nearest wall's normal (P,)."""
     record = e.case.record
-    depth = np.full((len(e.X), 2), np.inf)
-    for axis, sides in ((0, ("left", "right")), (1, ("bottom", "top"))):
+    depth = np.full((len(e.X), e.d), np.inf)
+    for axis, sides in enumerate(SIDES[: e.d]):
         for side, end in zip(sides, (record.lower[axis], record.upper[axis]), strict=True):
             if record.edges.get(side) in ("fixed", "roller"):
                 depth[:, axis] = np.minimum(depth[:, axis], np.abs(e.X[:, axis] - end))
