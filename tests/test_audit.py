@@ -40,7 +40,7 @@ BLIND = {
     "expanding_ring": {"rotation", "order", "spin", "start", "mirror", "walls"},
     "swirl": {"walls"},
     "bar": DIAGONAL | {"start", "plane"},
-    "bump3d": {"walls", "rotation", "amplitude", "crossing"},
+    "bump3d": {"walls", "rotation", "order", "amplitude", "crossing"},
     "bump3d:A=0.05": {"walls"},
     "swirl3d": {"walls"},
 }
