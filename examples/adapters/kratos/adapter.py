@@ -25,6 +25,7 @@ words = argparse.ArgumentParser()
 words.add_argument("case", type=Path)
 words.add_argument("out", type=Path)
 words.add_argument("--scheme", choices=SCHEMES, default="usl")
+words.add_argument("--tolerance", type=float, default=1e-9, help="of the search for a point's cell; Kratos' usual 1e-5")
 words.add_argument("--b", choices=("start", "end"), help="time of a step's body force; usual: what the scheme needs")
 told = words.parse_args()
 staggered = told.scheme in ("usl", "musl", "usf")  # v half a step before x
@@ -51,6 +52,8 @@ Kratos.ParallelUtilities.SetNumThreads(1)
 settings = {"solver_type": "dynamic", "domain_size": 2, "time_stepping": {"time_step": dt},
             "time_integration_method": "explicit" if told.scheme != "newmark" else "implicit",
             "analysis_type": "linear" if told.scheme != "newmark" else "non_linear",
+            "element_search_settings": {"search_algorithm_type": "bin_based", "max_number_of_results": 1000,
+                                        "searching_tolerance": told.tolerance, "remove_entities_not_found": True},
             "grid_model_import_settings": {"input_type": "use_input_model_part"},
             "model_import_settings": {"input_type": "use_input_model_part"}, **SCHEMES[told.scheme]}  # fmt: skip
 model = Kratos.Model()
