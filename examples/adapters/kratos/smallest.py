@@ -94,7 +94,8 @@ def beside_a_face():
             point.put((0.9, 0.5), tolerance)
             point.put((1.0 + beyond, 0.5), tolerance)
             point.step(np.diag([1.0, 0.0]))
-            rows.append({"tolerance": tolerance, "beyond": beyond, "stress": point.stress()})
+            cell = "left" if {node.Id for node in point.element.GetGeometry()} == {1, 2, 3, 4} else "right"
+            rows.append({"tolerance": tolerance, "beyond": beyond, "cell": cell, "stress": point.stress()})
     return {"rows": rows, "expected": neo_hookean(np.diag([1.0 + DT, 1.0]))}
 
 

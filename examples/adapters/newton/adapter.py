@@ -32,7 +32,6 @@ assert set(case["edges"].values()) == {"free"}, "no walls: take bump"
 assert constants["nu"] == 0, "strain along z is free: take --material neo_hookean:nu=0"
 
 # ---- one layer of particles in z, elastic without end
-wp.config.quiet = True
 wp.config.log_level = wp.LOG_WARNING
 wp.set_device("cpu")
 
