@@ -2,8 +2,8 @@
 
 import json
 import shlex
+from itertools import pairwise
 from math import log, log10
-from pathlib import Path
 
 from study import HERE, RESULTS, TOP, commands, studies
 
@@ -12,7 +12,7 @@ KEPT = 7  # significant digits of a stored error
 
 
 def stored(name):
-    """Content of results/NAME.json."""
+    """Content of measured/NAME.json."""
     return json.loads((RESULTS / f"{name}.json").read_text(encoding="utf-8"))
 
 
@@ -24,8 +24,7 @@ def short(value):
 
 def orders(runs):
     """Orders between adjacent levels."""
-    pairs = zip(runs, runs[1:], strict=False)
-    found = [log(a["u"] / b["u"]) / log(b["cells"] / a["cells"]) for a, b in pairs]
+    found = [log(a["u"] / b["u"]) / log(b["cells"] / a["cells"]) for a, b in pairwise(runs)]
     return " ".join(f"{order:.2f}" for order in found)
 
 

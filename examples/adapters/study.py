@@ -24,7 +24,7 @@ from mpm_verify.solver.model import Model, Observer
 from mpm_verify.solver.step import advance
 
 HERE = Path(__file__).resolve().parent
-TOP, RESULTS = HERE.parent.parent, HERE / "results"
+TOP, RESULTS = HERE.parent.parent, HERE / "measured"
 FRAMES = 16
 
 

@@ -1,4 +1,4 @@
-"""Smallest experiments on the explicit stress update of KratosMPMApplication: python smallest.py
+"""Smallest experiments on the explicit stress update of KratosMPMApplication: python smallest.py.
 
 One material point in two square cells of side 1; nodal velocities are set by hand, and Kratos updates the stress of the
 point from them. Neo-Hookean, E = 1e4, nu = 0.3. What is printed is one JSON document.

@@ -1,4 +1,4 @@
-"""Adapter of mpm99, an example that taichi ships: python adapter.py CASE OUT [--F now] [--C zero] [--precision f32]"""
+"""Adapter of mpm99, an example that taichi ships: python adapter.py CASE OUT [--F now] [--C zero] [--precision f32]."""
 
 import argparse
 import importlib.util
@@ -13,8 +13,8 @@ words = argparse.ArgumentParser()
 words.add_argument("case", type=Path)
 words.add_argument("out", type=Path)
 words.add_argument("--F", choices=("before", "now"), default="before", help="level of F that is started from: -dt or 0")
-words.add_argument("--C", choices=("exact", "zero"), default="exact", help="velocity gradient at first; zero takes F at 0")
-words.add_argument("--beside", type=int, default=4, help="cells of the grid beside the body; mpm99 holds the outer three")
+words.add_argument("--C", choices=("exact", "zero"), default="exact", help="gradient of v at first; zero: F at 0")
+words.add_argument("--beside", type=int, default=4, help="cells beside the body; mpm99 holds three")
 words.add_argument("--precision", choices=("f64", "f32"), default="f64")
 told = words.parse_args()
 after = "_before" if told.F == "before" and told.C == "exact" else ""
@@ -70,5 +70,6 @@ for step in range(1, case["steps"] + 1):
     if step in case["frames"]:
         found = {"x": mpm99.x.to_numpy() - shift, "v": mpm99.v.to_numpy(), "F": mpm99.F.to_numpy()}
         np.savez(told.out / f"result_{step}.npz", id=table["id"], **found)
-levels = {"v_lag": 0.5, "F_lag": 0.0 if told.F == "now" and told.C == "exact" else 1.0, "version": f"taichi {version('taichi')}"}
+late = 0.0 if told.F == "now" and told.C == "exact" else 1.0
+levels = {"v_lag": 0.5, "F_lag": late, "version": f"taichi {version('taichi')}"}
 (told.out / "result.json").write_text(json.dumps(levels))

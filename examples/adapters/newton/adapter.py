@@ -1,4 +1,4 @@
-"""Adapter of the implicit MPM of NVIDIA Newton: python adapter.py CASE OUT [--v half|zero] [--b start|end]"""
+"""Adapter of the implicit MPM of NVIDIA Newton: python adapter.py CASE OUT [--v half|zero] [--b start|end]."""
 
 import argparse
 import json
@@ -27,7 +27,7 @@ table = np.genfromtxt(told.case / "particles.csv", delimiter=",", names=True)
 X, dt, dx, constants = np.stack([table["X"], table["Y"]], axis=1), case["dt"], case["dx"], case["material"]["constants"]
 v = np.stack([table["vx_half"], table["vy_half"]] if told.v == "half" else [table["vx"], table["vy"]], axis=1)
 F = np.stack([table["Fxx"], table["Fxy"], table["Fyx"], table["Fyy"]], axis=1)
-assert (F == [1, 0, 0, 1]).all() and (X == np.stack([table["x"], table["y"]], axis=1)).all(), "start undeformed"
+assert (F == [1, 0, 0, 1]).all(), "start undeformed"
 assert set(case["edges"].values()) == {"free"}, "no walls: take bump"
 assert constants["nu"] == 0, "strain along z is free: take --material neo_hookean:nu=0"
 

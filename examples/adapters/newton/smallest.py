@@ -1,4 +1,4 @@
-"""Smallest experiment on the implicit MPM of NVIDIA Newton: python smallest.py
+"""Smallest experiment on the implicit MPM of NVIDIA Newton: python smallest.py.
 
 One elastic particle, one step without forces: in the middle of a cell, or on a face between two, with and without the
 drag of air, which adds to the mass of every node. What is printed is one JSON document.
