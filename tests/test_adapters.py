@@ -96,7 +96,7 @@ def test_fixed_corotated_has_the_stress_of_its_energy() -> None:
     particle = SimpleNamespace(F=F[None, :2, :2], sigma=np.zeros((1, 4)))
     model.update(particle, 0.0)
     assert particle.sigma[0] == pytest.approx(sigma[(0, 1, 2, 0), (0, 1, 2, 1)], rel=1e-7)
-    assert abs(sigma[0, 1]) > 100
+    assert abs(sigma[0, 1]) > 10
 
 
 # ---- the codes themselves

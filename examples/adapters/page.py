@@ -42,13 +42,13 @@ def row(number, study, found):
     levels = ", ".join(f"{one['cells']}: {short(one['u'])}" for one in found["runs"])
     verdict = (found["verdict"] or {}).get("verdict", "")
     cells = [str(number), found["version"], study["method"], f"`{study['solution']}`", levels, orders(found["runs"]),
-             verdict, digits(found)]  # fmt: skip
+             verdict, digits(found), study["found"]]  # fmt: skip
     return "| " + " | ".join(cells) + " |"
 
 
 def table():
     """Table of all studies."""
-    head = ["", "code", "method", "case", "cells: u in rms", "orders", "verdict", "digits"]
+    head = ["", "code", "method", "case", "cells: u in rms", "orders", "verdict", "digits", "found"]
     lines = ["| " + " | ".join(head) + " |", "| " + " | ".join(["---"] * len(head)) + " |"]
     rows = [row(k, study, stored(name)) for k, (name, study) in enumerate(studies().items(), 1)]
     return "\n".join([*lines, *rows])
@@ -87,10 +87,15 @@ def power(value):
 def on_a_face():
     """Table of the experiment with air drag."""
     lines = [
-        f"| {'on a face' if one['z'] else 'in the middle'} | {one['air_drag']:g} | {one['velocity']} |"
+        f"| {'on a face' if one['z'] else 'in the middle'} | {one['air_drag']:g} | {number(one['velocity'])} |"
         for one in stored("newton_smallest")["on_a_face"]
     ]
     return "\n".join(["| particle | `air_drag` | velocity after a step |", "| --- | --- | --- |", *lines])
+
+
+def number(value):
+    """Number with four digits, or what is none."""
+    return "not a number" if value == "nan" else f"{value:.4g}"
 
 
 def repeat():
@@ -116,8 +121,10 @@ def series(name, reference=False):
 def page():
     """Text of the page."""
     template = (HERE / "page.md.in").read_text(encoding="utf-8")
+    same = {**stored("kratos_usl_large"), "reference": [one["u"] for one in stored("tiny_symmetric")["runs"]]}
     parts = {
-        "TABLE": table(), "TURNED": turned(), "FACED": faced(), "ON_A_FACE": on_a_face(), "REPEAT": repeat(),
+        "SAME": digits(same), "TABLE": table(), "TURNED": turned(), "FACED": faced(), "ON_A_FACE": on_a_face(),
+        "REPEAT": repeat(),
         "LARGE": series("kratos_usl_large"), "LARGE_REFERENCE": series("kratos_usl_large", reference=True),
         "SYMMETRIC": series("tiny_symmetric"), "USUAL": level("kratos_usl_large_tolerance", 12),
         "EXACT": level("kratos_usl_large", 12),
@@ -125,7 +132,7 @@ def page():
         "FACE_FOUND": stress(stored("kratos_smallest")["beside_a_face"]["rows"][1]["stress"], ", "),
     }  # fmt: skip
     for name in ("kratos_usf", "kratos_central_difference", "kratos_central_difference_b_start", "mpm99",
-                 "mpm99_F_at_0", "newton", "newton_b_start"):  # fmt: skip
+                 "mpm99_F_at_0", "newton", "newton_dt_h"):  # fmt: skip
         parts[f"ORDERS({name})"] = orders(stored(name)["runs"])
     for key, text in parts.items():
         assert f"<{key}>" in template, key

@@ -1,4 +1,4 @@
-"""Tiny solver of `verify example python` with F advanced without the spin of L: python symmetric.py CASE OUT."""
+"""Tiny solver of `verify example python toy` with F advanced without the spin of L: python symmetric.py CASE OUT."""
 
 import runpy
 import sys
