@@ -1,8 +1,13 @@
 # make mms: set up .venv, run the study of the paper's Figure 1, print where the report is.   make test: all checks.
+# make adapters: install public codes into .venv-adapters, and run their adapters.
 PYTHON ?= python3
 BIN = .venv/bin
 
+<<<<<<< HEAD
 .PHONY: mms test slow bench recorded lock clean
+=======
+.PHONY: mms test slow bench adapters lock clean
+>>>>>>> 5b988fc (The page of public codes, made of stored results, and its test)
 
 mms: .venv/.installed
 	$(BIN)/verify mms --method cpdi
@@ -23,6 +28,15 @@ recorded: .venv/.installed
 bench: .venv/.installed
 	$(BIN)/pytest tests/benchmarks --benchmark-only -m "slow or not slow"
 
+adapters: .venv/.installed .venv-adapters/.installed
+	ADAPTERS_PYTHON=$(CURDIR)/.venv-adapters/bin/python $(BIN)/pytest tests/test_adapters.py -m "slow or not slow"
+
+.venv-adapters/.installed: examples/adapters/requirements.txt
+	@echo "setting up .venv-adapters with the public codes of examples/adapters/requirements.txt ..."
+	@$(PYTHON) -m venv .venv-adapters
+	@.venv-adapters/bin/python -m pip install --quiet --disable-pip-version-check -r examples/adapters/requirements.txt
+	@touch $@
+
 .venv/.installed: requirements.lock pyproject.toml
 	@$(PYTHON) -c "import sys; sys.exit(sys.version_info < (3, 11) and 'Python 3.11 or newer is needed: make PYTHON=python3.12')"
 	@echo "setting up .venv with the packages of requirements.lock ..."
@@ -36,4 +50,4 @@ lock: .venv/.installed
 	$(BIN)/pip-compile --quiet --generate-hashes --allow-unsafe --strip-extras --extra dev --no-emit-index-url --no-emit-find-links --no-emit-trusted-host --output-file requirements.lock pyproject.toml
 
 clean:
-	rm -rf .venv results
+	rm -rf .venv .venv-adapters results

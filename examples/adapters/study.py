@@ -1,0 +1,116 @@
+"""Studies of public codes: python examples/adapters/study.py [NAME ...] runs those of studies.toml, or some of them.
+
+The adapters run with the interpreter that the environment variable ADAPTERS_PYTHON names, else with this one. What is
+kept of a study is small: its errors over 16 frames, its verdict, and the errors of the solver here in the same frames.
+"""
+
+import json
+import os
+import shlex
+import subprocess
+import sys
+import tempfile
+import tomllib
+from math import sqrt
+from pathlib import Path
+
+import numpy as np
+
+from mpm_verify.cases.mms.exact import manufactured
+from mpm_verify.cases.mms.execute import setup
+from mpm_verify.cases.mms.run import Run
+from mpm_verify.mms.discretisation import output_steps
+from mpm_verify.solver.model import Model, Observer
+from mpm_verify.solver.step import advance
+
+HERE = Path(__file__).resolve().parent
+TOP, RESULTS = HERE.parent.parent, HERE / "measured"
+FRAMES = 16
+
+
+def studies():
+    """Studies by their names."""
+    return {one["name"]: one for one in tomllib.loads((HERE / "studies.toml").read_text(encoding="utf-8"))["study"]}
+
+
+def commands(study, python="python"):
+    """Commands of a study, each a list of words: one, or one a level where levels have Courant numbers of their own."""
+    script = f"examples/adapters/{study['code']}/{study.get('script', 'adapter.py')}"
+    solver = f"{python} {script} {{case}} {{out}} {study['arguments']}".strip()
+    common = ["verify", "mms", "--solver", solver, "--solution", study["solution"]]
+    common += ["--material", study["material"]] if "material" in study else []
+    if "courant" not in study:
+        return [[*common, "--cells", ",".join(map(str, study["cells"])), "--ppc", "4", *study["expect"]]]
+    return [[*common, "--cells", str(cells), "--ppc", "4", "--courant", str(courant), *study["expect"]]
+            for cells, courant in zip(study["cells"], study["courant"], strict=True)]  # fmt: skip
+
+
+def answered(words, out):
+    """Document and stored results of a command, in a folder."""
+    command = [sys.executable, "-m", "mpm_verify", *words[1:], "--json", "--no-page", "--jobs", "1", "--out", str(out)]
+    path = os.pathsep.join(filter(None, [str(TOP), os.environ.get("PYTHONPATH", "")]))
+    done = subprocess.run(command, cwd=TOP, capture_output=True, text=True, env=os.environ | {"PYTHONPATH": path})
+    if done.returncode not in (0, 1, 3):
+        raise SystemExit(done.stdout[-2000:] + done.stderr[-2000:])
+    stored = [json.loads(file.read_text(encoding="utf-8")) for file in sorted((out / "runs").glob("*.json"))]
+    return json.loads(done.stdout), stored
+
+
+def run(study, python):
+    """Result of a study, as it is kept."""
+    rows, versions, verdict = [], set(), None
+    for words in commands(study, python):
+        with tempfile.TemporaryDirectory() as folder:
+            document, stored = answered(words, Path(folder))
+        versions |= {one["told"] for one in stored if one.get("told")}
+        for row in document["runs"]:
+            usual = float(words[words.index("--courant") + 1]) if "--courant" in words else 0.4
+            if row["courant"] == usual:
+                errors = {name: float(f"{norms['rms']:.6e}") for name, norms in (row["errors"] or {}).items()}
+                rows.append({"cells": row["cells"], "courant": usual, **errors})
+        if "courant" not in study:
+            verdict = next({key: one[key] for key in ("verdict", "reason")} for one in document["verdicts"])
+    found = {"version": versions.pop(), "runs": rows, "verdict": verdict}
+    if "reference" in study:
+        found["reference"] = [reference(study, row["cells"], row["courant"]) for row in rows]
+    return found
+
+
+class Kept(Observer):
+    """Observer that sums squared errors of u in some frames."""
+
+    def __init__(self, exact, steps):
+        self.exact, self.steps, self.squares = exact, steps, []
+
+    def after_step(self, model: Model) -> None:
+        """Take the error of this step, if it is one of the frames."""
+        if model.steps in self.steps:
+            x, X = (model.particles.in_initial_order(name) for name in ("x", "X"))
+            self.squares.append(((x - self.exact.x(X, model.time)) ** 2).sum(axis=1).mean())
+
+
+def reference(study, cells, courant):
+    """Error of u, rms over the frames, of the solver here: hats, FLIP, and the stress update that the study names."""
+    here = Run(method="mpm", solution=study["solution"], material="neo_hookean", cells=cells, ppc=4, courant=courant,
+               stress=study["reference"])  # fmt: skip
+    model, load, steps = setup(here)
+    kept = Kept(manufactured(here.solution, here.material), output_steps(steps, FRAMES))
+    model.watch(kept)
+    for _ in range(steps):
+        advance(model, load)
+    return float(f"{sqrt(np.mean(kept.squares)):.6e}")
+
+
+def main(names):
+    """Run some studies, or all, and keep what they gave."""
+    known = studies()
+    python = shlex.quote(os.environ.get("ADAPTERS_PYTHON", sys.executable))
+    for name in names or known:
+        found = run(known[name], python)
+        RESULTS.mkdir(exist_ok=True)
+        (RESULTS / f"{name}.json").write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
+        print(name, found["verdict"], [row["u"] for row in found["runs"]], found.get("reference"), flush=True)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

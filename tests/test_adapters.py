@@ -1,0 +1,177 @@
+"""Adapters of public codes, and the page made of what they gave: it is what the script makes of the stored results.
+
+The adapters run where their program is: with the interpreter that ADAPTERS_PYTHON names, else with this one; `make
+adapters` makes such an environment. Elsewhere they are skipped.
+"""
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from importlib import import_module
+from math import log
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from fixtures_command import TOP
+
+from mpm_verify.cases.mms.external.execute import execute
+from mpm_verify.cases.mms.run import Run
+from mpm_verify.solver.plugins import MATERIALS, create
+
+ADAPTERS = TOP / "examples" / "adapters"
+PROGRAMS = {"kratos": "KratosMultiphysics.MPMApplication", "mpm99": "taichi", "newton": "newton"}
+PYTHON = os.environ.get("ADAPTERS_PYTHON", sys.executable)
+
+
+@pytest.fixture(scope="module")
+def scripts() -> Iterator[tuple[Any, Any]]:
+    """The modules study and page."""
+    sys.path.insert(0, str(ADAPTERS))
+    yield import_module("study"), import_module("page")
+    sys.path.remove(str(ADAPTERS))
+
+
+# ---- the page
+
+
+def test_the_page_is_made_of_the_stored_results(scripts: tuple[Any, Any]) -> None:
+    _, page = scripts
+    assert page.page() == page.PAGE.read_text(encoding="utf-8")
+
+
+def test_a_changed_result_changes_the_page(scripts: tuple[Any, Any], monkeypatch: pytest.MonkeyPatch) -> None:
+    study, page = scripts
+    for name in study.studies():
+        found = page.stored(name)
+        found["runs"][0]["u"] *= 1.01
+        with monkeypatch.context() as changed:
+            changed.setattr(page, "stored", lambda one, name=name, found=found, stored=page.stored: (
+                found if one == name else stored(one)
+            ))  # fmt: skip
+            assert page.page() != page.PAGE.read_text(encoding="utf-8"), name
+
+
+def test_orders_and_digits_of_the_page(scripts: tuple[Any, Any]) -> None:
+    _, page = scripts
+    runs = [{"cells": 8, "u": 4.0e-3}, {"cells": 16, "u": 1.0e-3}, {"cells": 24, "u": 1.5e-3}]
+    assert page.orders(runs) == "2.00 -1.00"
+    assert page.digits({"runs": runs}) == ""
+    assert page.digits({"runs": runs, "reference": [4.0e-3, 1.0e-3, 1.5e-3]}) == "all 7"
+    assert page.digits({"runs": runs, "reference": [4.0e-3, 1.001e-3, 1.5e-3]}) == "3.0"
+
+
+def test_stored_results_are_those_of_the_studies(scripts: tuple[Any, Any]) -> None:
+    """Levels, references, and the digits that the codes are known by."""
+    study, page = scripts
+    for name, one in study.studies().items():
+        found = page.stored(name)
+        assert [row["cells"] for row in found["runs"]] == one["cells"], name
+        assert len(found.get("reference", [])) == (len(one["cells"]) if "reference" in one else 0)
+        assert (ADAPTERS / one["code"] / one.get("script", "adapter.py")).is_file()
+    assert {path.stem for path in study.RESULTS.glob("*.json")} == {
+        *study.studies(), "kratos_smallest", "newton_smallest",
+    }  # fmt: skip
+    assert page.level("kratos_usl", 8) == "7.253e-8"
+    assert page.digits(page.stored("kratos_usl")) == "all 7"
+
+
+# ---- the constitutive model of mpm99
+
+
+def test_fixed_corotated_has_the_stress_of_its_energy() -> None:
+    """Its stress is dW/dF Fᵀ / J, by differences of the energy; zz too."""
+    model: Any = create(MATERIALS, str(ADAPTERS / "mpm99" / "fixed_corotated.py"))
+    F, h = np.array([[1.1, 0.2, 0.0], [-0.15, 0.9, 0.0], [0.0, 0.0, 1.0]]), 1e-6
+    P = np.zeros((3, 3))
+    for i, j in np.ndindex(3, 3):
+        step = np.zeros((3, 3))
+        step[i, j] = h
+        ends = [model.energy((F + sign * step).tolist(), log) for sign in (1, -1)]
+        P[i, j] = (ends[0] - ends[1]) / (2 * h)
+    sigma = P @ F.T / np.linalg.det(F)
+    particle = SimpleNamespace(F=F[None, :2, :2], sigma=np.zeros((1, 4)))
+    model.update(particle, 0.0)
+    assert particle.sigma[0] == pytest.approx(sigma[(0, 1, 2, 0), (0, 1, 2, 1)], rel=1e-7)
+    assert abs(sigma[0, 1]) > 10
+
+
+# ---- the codes themselves
+
+
+def needs(code: str) -> None:
+    """Skip what the interpreter has no program for."""
+    probe = "import importlib.util as u, sys; sys.exit(u.find_spec(sys.argv[1]) is None)"
+    if subprocess.run([PYTHON, "-c", probe, PROGRAMS[code]], capture_output=True).returncode:
+        pytest.skip(f"{PYTHON} has no {PROGRAMS[code]}: run make adapters")
+
+
+def rerun(study: Any, name: str, cells: int) -> dict[str, float]:
+    """Errors of a level of a study, rms, run anew."""
+    one = study.studies()[name]
+    words = next(words for words in study.commands(one, PYTHON))
+    solver = words[words.index("--solver") + 1]
+    courant = dict(zip(one["cells"], one.get("courant", [0.4] * len(one["cells"])), strict=True))[cells]
+    material = one.get("material", "neo_hookean")
+    run = Run(solver=solver, solution=one["solution"], material=material, cells=cells, ppc=4, courant=courant)
+    result, _ = execute(run)
+    assert result.status == "finished", (result.failure, result.log)
+    return {quantity: norms["rms"] for quantity, norms in result.errors.items()}
+
+
+SAME = {"kratos": 1e-5, "mpm99": 1e-5, "newton": 1e-2}  # rounding grows over the steps; one is in single precision
+LEVELS = [("kratos_usl", 8), ("kratos_usl", 12), ("kratos_usl_bump", 8), ("kratos_usl_axis_aligned", 8),
+          ("kratos_musl", 8), ("kratos_usf", 8), ("kratos_central_difference", 8),
+          ("kratos_central_difference_b_start", 8), ("kratos_newmark", 8), ("kratos_usl_large", 12),
+          ("kratos_usl_large_tolerance", 12), ("mpm99", 8), ("mpm99_F_at_0", 8), ("newton", 8)]  # fmt: skip
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "cells"), LEVELS)
+def test_a_code_gives_what_is_stored(
+    scripts: tuple[Any, Any], name: str, cells: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    study, page = scripts
+    code = study.studies()[name]["code"]
+    needs(code)
+    monkeypatch.chdir(TOP)
+    (kept,) = [row for row in page.stored(name)["runs"] if row["cells"] == cells]
+    found = rerun(study, name, cells)
+    assert found == pytest.approx({quantity: kept[quantity] for quantity in found}, rel=SAME[code])
+
+
+@pytest.mark.slow
+def test_the_tiny_solver_without_spin_gives_what_is_stored(
+    scripts: tuple[Any, Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is a program of ours, and needs none of the others: u has the digits of the code that leaves the spin out."""
+    study, page = scripts
+    monkeypatch.setitem(globals(), "PYTHON", sys.executable)
+    monkeypatch.chdir(TOP)
+    found = rerun(study, "tiny_symmetric", 8)["u"]
+    assert found == pytest.approx(page.stored("tiny_symmetric")["runs"][0]["u"], rel=1e-6)
+    assert found == pytest.approx(page.stored("kratos_usl_large")["runs"][0]["u"], rel=1e-4)
+    assert abs(found / page.stored("kratos_usl_large")["reference"][0] - 1) > 0.01
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("code", ["kratos", "newton"])
+def test_the_smallest_experiments_give_what_is_stored(scripts: tuple[Any, Any], code: str) -> None:
+    _, page = scripts
+    needs(code)
+    done = subprocess.run([PYTHON, str(ADAPTERS / code / "smallest.py")], capture_output=True, text=True, check=True)
+    found = json.loads(done.stdout[done.stdout.index("\n{\n") if not done.stdout.startswith("{") else 0 :])
+    kept = page.stored(f"{code}_smallest")
+    assert list(flat(found)) == pytest.approx(list(flat(kept)), rel=1e-5, abs=1e-12)
+
+
+def flat(tree: Any) -> Iterator[float]:
+    """Numbers of a document in their order; a text counts by its characters."""
+    if isinstance(tree, dict | list):
+        for part in tree.values() if isinstance(tree, dict) else tree:
+            yield from flat(part)
+    else:
+        yield from [float(tree)] if isinstance(tree, int | float) else map(float, tree.encode())
