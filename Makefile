@@ -3,11 +3,7 @@
 PYTHON ?= python3
 BIN = .venv/bin
 
-<<<<<<< HEAD
-.PHONY: mms test slow bench recorded lock clean
-=======
-.PHONY: mms test slow bench adapters lock clean
->>>>>>> 5b988fc (The page of public codes, made of stored results, and its test)
+.PHONY: mms test slow bench recorded adapters lock clean
 
 mms: .venv/.installed
 	$(BIN)/verify mms --method cpdi
