@@ -26,7 +26,7 @@ from mpm_verify.mms.export.start import named
 from mpm_verify.mms.manufacture import manufacture
 from mpm_verify.reports.export.junit import write_junit
 from mpm_verify.reports.export.summary import markdown
-from mpm_verify.reports.sentences import failures, own_solver
+from mpm_verify.reports.sentences import commands, failures, own_solver
 from mpm_verify.solver.failure import FailureKind, RunFailed
 from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS, create
 from mpm_verify.solver.state import Floats
@@ -532,6 +532,35 @@ def test_the_start_that_fits_is_named(tmp_path: Path) -> None:
     assert own_solver.starts(orders).startswith("Order 2.0")
     assert "v at −dt/2" in own_solver.starts(orders)
     assert not done.verdicts
+
+
+# ---- walls
+
+
+def wrong_at_walls(case: Case) -> Any:
+    """Exact positions with an error of first order where there are walls, of second order where there are none."""
+    r, X = case.record, case.array("X")
+    made = manufacture(create(SOLUTIONS, r.solution), LAW, LAW.rho0)
+    held = "fixed" in r.edges.values()
+    return {step: {"x": made.x(X, step * r.dt) + (1e-5 * r.dx if held else 1e-4 * r.dx**2)} for step in r.frames}
+
+
+def test_walls_are_told_from_the_interior(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """With walls alone the command that tells is printed; with both, what it tells."""
+    more: dict[str, Any] = {"cells": [8, 12, 16, 24], "order": 2.0, "courant": [0.4, 0.2]}
+    alone = mv.study("mms", solver=wrong_at_walls, solution="clamped_shear:G=1e-6", out=tmp_path / "a", **more)
+    assert own_solver.walls(table.by_walls(alone.record)) == ""
+    both = mv.study("mms", solver=wrong_at_walls, solution=["clamped_shear:G=1e-6", "bump"], out=tmp_path / "b", **more)
+    assert own_solver.walls(table.by_walls(both.record)) == "Order 1.00 with walls, 2.00 without: look at the walls."
+    study = replace(
+        alone.record.study, command="verify mms --solver './mine {case} {out}' --solution clamped_shear:G=1e-6"
+    )
+    typed = commands.walls(study, alone.record.findings, tmp_path / "a")
+    assert typed.startswith("verify mms --solver './mine {case} {out}' --solution bump --out ")
+    free = replace(study, runs=tuple(replace(run, solution="bump") for run in study.runs))
+    assert commands.walls(free, alone.record.findings, tmp_path / "a") == ""
+    sound = [f for f in both.record.findings if f.plan.run.solution == "bump"]
+    assert commands.walls(study, sound, tmp_path / "a") == ""
 
 
 @pytest.mark.parametrize("name", STARTS)

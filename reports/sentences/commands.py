@@ -12,7 +12,7 @@ from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.cases.judging.records import Action, Outcome, ReasonCode, Wanted
 from mpm_verify.reports.sentences import any_code, own_solver, verdicts
 from mpm_verify.solver.failure import FailureKind
-from mpm_verify.solver.plugins import is_file, split
+from mpm_verify.solver.plugins import SOLUTIONS, create, is_file, split
 
 
 def reason(study: Study[Any], found: Finding) -> str:
@@ -63,6 +63,7 @@ def hinted(found: Finding) -> set[str]:
     return own_solver.causes(found.results) if getattr(found.plan.run, "solver", "") else set()
 
 
+FREE = "bump"  # solution without walls
 LOW = 1.8  # order below which time levels may be to blame
 
 
@@ -74,6 +75,27 @@ def levels(study: Study[Any], found: Sequence[Finding], folder: Path) -> str:
     words = [word for word in shlex.split(study.command) if word != "--quick"]
     words = replaced(replaced(words, "--cells", ",".join(map(str, cells))), "--start", "all")
     return shlex.join([*words, "--out", f"{os.path.relpath(folder)}-levels"])
+
+
+def walls(study: Study[Any], found: Sequence[Finding], folder: Path) -> str:
+    """Command of the same study of a body without walls, where the order is low beside some; empty elsewhere."""
+    solutions = {run.solution for run in study.runs} if study.case == "mms" else set()
+    if study.command.split()[:2] != ["verify", "mms"] or not any(map(levels_to_blame, found)):
+        return ""
+    if (
+        not solutions
+        or not all(has_walls(one) for one in solutions)
+        or any(run.start or run.dim == 3 for run in study.runs)
+    ):
+        return ""
+    words = replaced(shlex.split(study.command), "--solution", FREE)
+    return shlex.join([*words, "--out", f"{os.path.relpath(folder)}-{FREE}"])
+
+
+def has_walls(solution: str) -> bool:
+    """Whether a solution has edges that hold the body."""
+    given = getattr(create(SOLUTIONS, solution), "boundary", "free")
+    return bool({"fixed", "roller"} & ({given} if isinstance(given, str) else set(given)))
 
 
 def levels_to_blame(found: Finding) -> bool:

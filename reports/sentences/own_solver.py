@@ -100,6 +100,13 @@ def start(name: str) -> str:
     return ", ".join(LEVELS[part] for part in name.split("."))
 
 
+def walls(orders: dict[bool, float], low: float = 1.8) -> str:
+    """Sentence on the last local orders of u with walls (True) and without; empty where walls are not why."""
+    if orders.keys() != {True, False} or orders[True] >= low or orders[False] < low:
+        return ""
+    return f"Order {orders[True]:.2f} with walls, {orders[False]:.2f} without: look at the walls."
+
+
 def starts(orders: dict[str, float], low: float = 1.8, high: float = 2.3) -> str:
     """Sentence on the orders of u by start, the time levels that were given by force; empty where there are not two."""
     if len(orders) < 2:

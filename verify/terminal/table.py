@@ -54,10 +54,12 @@ def show(record: Record, page: Path | None, console: Console | None = None) -> N
         if finding.stall:
             out.print(stall(record, finding, finding.stall))
     lines = own_solver.hints(record.results.values())
-    for line in [*lines, *filter(None, [own_solver.starts(by_start(record))])]:
+    for line in [*lines, *filter(None, [own_solver.starts(by_start(record)), own_solver.walls(by_walls(record))])]:
         out.print(f"HINT  {line}", markup=False)
     if levels := commands.levels(study, found, record.store.folder):
         out.print(f"  this would tell which time levels it needs: {levels}", soft_wrap=True, markup=False)
+    if free := commands.walls(study, found, record.store.folder):
+        out.print(f"  this would tell whether its walls are why: {free}", soft_wrap=True, markup=False)
     if not any(f.counts for f in found):
         theirs = any(getattr(run, "solver", "") for run in study.runs) and "start" not in study.axes
         hint = "; say what is expected: --order 2, or --as METHOD" if theirs else ""
@@ -73,6 +75,17 @@ def by_start(record: Record) -> dict[str, float]:
         if getattr(series.first, "start", "") and len(errors) > 1:
             (coarse, e), (fine, f) = errors[-2:]
             found[series.first.start] = log(e / f) / log(fine.cells / coarse.cells)
+    return found
+
+
+def by_walls(record: Record) -> dict[bool, float]:
+    """Least of the last local orders of u of a solver of somebody else, on solutions with walls and without."""
+    found: dict[bool, float] = {}
+    for finding in record.findings:
+        run, orders = finding.plan.run, finding.verdict.local_orders
+        if getattr(run, "solver", "") and (finding.plan.quantity, finding.plan.norm) == ALWAYS and orders:
+            held = commands.has_walls(run.solution)
+            found[held] = min(orders[-1], found.get(held, orders[-1]))
     return found
 
 
