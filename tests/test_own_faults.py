@@ -118,42 +118,52 @@ def errors_of(fault: str, out: Path) -> dict[str, float]:
 
 # ---- verdicts
 
-MOVED = [  # faults that move the body: u alone sees them
-    "force one step late",
-    "FLIP ratio ignored (PIC)",
-    "F advanced twice",
-    "increments keep what the wall took",
-    "wall one node in",
-    "output one step old",
-    "float32 output",
-]
-WRITTEN = {  # faults that leave u as it is, and what has to see them once all that is registered decides
-    "F advanced by L transposed": "F",
-    "sigma of the other sign": "sigma",
+ALL = {"u", "v", "F", "sigma"}
+REFUTED = {  # quantities that fail with --as mpm on 6, 8, 12 and 16 cells of clamped_shear:G=1e-6
+    "none": set[str](),
+    "force never added": ALL,
+    "force one step late": ALL,
+    "FLIP ratio ignored (PIC)": ALL,
+    "F advanced twice": ALL,
+    "increments keep what the wall took": ALL,
+    "wall one node in": ALL,
+    "output one step old": ALL,
+    "no half-step start": set[str](),
+    "float32 output": {"u"},
+    "F advanced by L transposed": {"F"},
+    "sigma one step late": {"sigma"},
 }
 
 
 def study(fault: str, tmp_path: Path, **more: Any) -> Any:
     """Study of the toy with a fault, on the coarsest four grids that the sound toy passes on."""
-    axes = {"solution": SHEAR, "cells": [6, 8, 12, 16], "courant": [0.4, 0.2], "order": 2.0, **more}
+    axes = {"solution": SHEAR, "cells": [6, 8, 12, 16], "courant": [0.4, 0.2], **more}
     return mv.study("mms", solver=toy(fault), ppc=4, out=tmp_path / "study", **axes)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("fault", ["none", *MOVED])
-def test_a_fault_that_moves_the_body_does_not_pass(fault: str, tmp_path: Path) -> None:
-    done = study(fault, tmp_path)
-    outcomes = {verdict["quantity"]: verdict["verdict"] for verdict in done.verdicts}
-    assert (outcomes["u"] == "PASS") == (fault == "none"), done.verdicts
-    assert (done.exit_code == 0) == (fault == "none")
+@pytest.mark.parametrize("fault", REFUTED)
+def test_a_fault_gets_its_verdict_and_its_hint(fault: str, tmp_path: Path) -> None:
+    """The hint reaches JUnit and the summary too."""
+    done = study(fault, tmp_path, method="mpm")
+    failed = {verdict["quantity"] for verdict in done.verdicts if verdict["verdict"] == "FAIL"}
+    assert failed == REFUTED[fault], done.verdicts
+    assert done.exit_code == (1 if failed else 0)
     said = own_solver.hints(done.record.results.values())
-    assert bool(said) == (fault != "none")
+    assert len(said) == (fault != "none")
     write_junit(tmp_path / "out.xml", done.record)
     for line in said:
-        assert line.split('"')[0] in (tmp_path / "out.xml").read_text()
-        assert line.split("_")[0] in markdown(done.record)
-    command = "--courant" in commands_of(done)
-    assert not (command and fault == "FLIP ratio ignored (PIC)"), "the advice would loop"
+        assert line.partition('"')[0] in (tmp_path / "out.xml").read_text()
+        assert line.partition("_")[0] in markdown(done.record)
+
+
+@pytest.mark.slow
+def test_no_time_step_is_asked_for_where_each_step_loses_momentum(tmp_path: Path) -> None:
+    """Nor are time levels: the advice would loop."""
+    asked = commands_of(study("FLIP ratio ignored (PIC)", tmp_path, order=2.0))
+    assert "--courant 0.1" not in asked
+    assert "--courant 0.2" not in asked
+    assert "--start" not in asked
 
 
 def commands_of(done: Any) -> str:
@@ -161,14 +171,6 @@ def commands_of(done: Any) -> str:
     record = done.record
     asked = [commands.decides(record.study, finding, record.store.folder) for finding in record.findings]
     return " ".join([*asked, commands.levels(record.study, record.findings, record.store.folder)])
-
-
-@pytest.mark.slow
-@pytest.mark.xfail(strict=True, reason="u alone decides of a solver of somebody else, and these leave u as it is")
-@pytest.mark.parametrize("fault", WRITTEN)
-def test_a_fault_that_is_written_does_not_pass(fault: str, tmp_path: Path) -> None:
-    done = study(fault, tmp_path, method="mpm", order=0.0)
-    assert {verdict["quantity"]: verdict["verdict"] for verdict in done.verdicts}[WRITTEN[fault]] != "PASS"
 
 
 ENDS = {
@@ -305,8 +307,21 @@ def test_every_hint_has_a_sentence_without_gaps() -> None:
 def test_the_document_has_a_row_for_each_fault() -> None:
     """Fault, and the names of its hints, none of others; or what its failure says."""
     lines = DOCUMENT.read_text(encoding="utf-8").splitlines()
-    rows = {cells[1].strip(): cells[2] for cells in (line.split("|") for line in lines) if len(cells) > 3}
+    rows = {cells[1].strip(): " ".join(cells[2:]) for cells in (line.split("|") for line in lines) if len(cells) > 3}
     for fault in HINTED.keys() - {"none", "V as it should be"}:
         assert set(re.findall(r"`(\w+)`", rows[fault])) == HINTED[fault].keys(), fault
+    for fault, quantities in REFUTED.items():
+        verdict = "FAIL" if quantities else "PASS"
+        assert fault == "none" or verdict in rows[fault], fault
     for fault, said in ENDS.items():
         assert said.partition(" 64")[0] in rows[fault] or said.partition(" 1:")[0] in rows[fault], fault
+
+
+@pytest.mark.slow
+def test_hints_of_one_start_are_said_and_of_several_none(tmp_path: Path) -> None:
+    """An adapter may declare a start; a scan of several is told as a whole."""
+    axes = {"cells": [8], "courant": [0.4], "order": 2.0}
+    one = study("sigma of the other sign", tmp_path / "one", start=["half.now.start"], **axes)
+    both = study("sigma of the other sign", tmp_path / "both", start=["half.now.start", "zero.now.start"], **axes)
+    assert len(own_solver.hints(one.record.results.values())) == 1
+    assert own_solver.hints(both.record.results.values()) == []

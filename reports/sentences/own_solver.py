@@ -64,9 +64,15 @@ def hint(name: str, value: float) -> str:
 
 
 def hints(results: Iterable[Any]) -> list[str]:
-    """Sentences on the finest finished run of each solver, with the longest time step; none for the reference."""
+    """Sentences on the finest finished run of each solver, with the longest time step; none for the reference.
+
+    None either of several starts: most of them are wrong by intent, and what they are to tell is told by `starts`.
+    """
     finest: dict[tuple[str, str], Any] = {}
-    for result in sorted(results, key=fineness):
+    known = list(results)
+    if len({getattr(result.run, "start", "") for result in known}) > 1:
+        return []
+    for result in sorted(known, key=fineness):
         if getattr(result.run, "solver", "") and result.status == "finished":
             finest[result.run.method, result.run.solution] = result
     return [hint(name, value) for result in finest.values() for name, value in said(result)]

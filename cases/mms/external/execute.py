@@ -59,8 +59,7 @@ def execute(run: Run, tick: Callable[[float], None] = lambda fraction: None) -> 
     if answer.frames:
         exact, X, dt = exact_of(run), positions(case), case.record.dt
         found = compare(exact, X, case.particles["V0"], dt, answer.frames, answer.told)
-        if not run.start:  # other time levels by force are told as a whole
-            why = hints(exact, case, answer.frames, answer.told)
+        why = hints(exact, case, answer.frames, answer.told)
     result, numbers = result_of(run, case, found, answer.failure), answer.told.numbers
     return replace(result, wall_s=answer.wall_s, log=answer.log, exit_code=answer.exit_code,
                    told=answer.told.version, values=why | numbers), {}  # fmt: skip
