@@ -5,8 +5,8 @@
     Q = I + sin A K + (1 - cos A) K^2, the rotation by A about n = (1, 2, 2) / 3, where K a = n x a
 
 Boundary: h and its first two derivatives vanish on all six faces, so there u = 0, F = I, P = 0 and Div P = 0: the faces
-are free, and no wall is needed. The grid is wider than the body. At t = 0 the body is undeformed: u = 0, F = I, sigma = 0. The
-duration 2 L / C is one period.
+are free, and no wall is needed. The grid is wider than the body. At t = 0 the body is undeformed: u = 0, F = I,
+sigma = 0. The duration 2 L / C is one period.
 Source: the project's own, for solvers of three dimensions; the reference solver has two. F is full and not symmetric,
 F and its rate do not commute, and both 1 - cos (which starts with acceleration) and sin (which starts with velocity)
 occur: defects of shear and of rotation show. For |A| < 1.5 and |B| < 0.3, det F > 0.3.
