@@ -28,7 +28,7 @@ SAMPLES: dict[str, dict[str, str]] = {  # of each case two values of each field,
         "cells": "8,16", "ppc": "4,9", "courant": "0.4,0.2", "transfer": "flip,apic", "stress": "usl,musl",
         "staggered": "yes,no", "force": "no,yes", "offset": "0.25,-0.125", "layout": "uniform,graded",
         "solver": f"{sys.executable} {{{{case}}}} {{{{out}}}}", "solver_version": "1,2", "order": "2,1",
-        "time_limit": "60,120", "memory_limit": "0,1000", "start": "half.now.start,zero.now.end",
+        "time_limit": "60,120", "memory_limit": "0,1000", "start": "half.now.start,zero.now.end", "dim": "2,3",
     },
     "wave_bar": {
         "method": "cpdi,mpm", "material": "neo_hookean,linear_elastic", "cells": "8,16", "ppc": "4,9",
@@ -56,6 +56,7 @@ WITH: dict[tuple[str, str], dict[str, str]] = {  # what else has to be asked for
     ("element", "path"): {"test": "path"},
     ("element", "units"): {"test": "path", "path": "{here}/one.csv"},
     ("mms", "start"): {"solver": f"{sys.executable} {{{{case}}}} {{{{out}}}}"},
+    ("mms", "dim"): {"solver": f"{sys.executable} {{{{case}}}} {{{{out}}}}"},
     ("mms", "solver_version"): {"solver": f"{sys.executable} {{{{case}}}} {{{{out}}}}"},
 }
 UNNAMED = ("order", "time_limit", "memory_limit")  # fields that say nothing of the numbers
