@@ -126,8 +126,8 @@ def test_faces_are_free_and_the_start_is_undeformed(text: str) -> None:
     for axis, at in ((k, at) for k in range(3) for at in (0.0, L)):
         X_face = X.copy()
         X_face[:, axis] = at
-        assert np.abs(exact.u(X_face, t)).max() < 1e-25 * L
-        assert np.abs(exact.F(X_face, t) - np.eye(3)).max() < 1e-25
+        assert np.abs(exact.u(X_face, t)).max() < 1e-14 * L
+        assert np.abs(exact.F(X_face, t) - np.eye(3)).max() < 1e-13
     assert (exact.u(X, 0.0) == 0).all()
     assert (exact.F(X, 0.0) == np.eye(3)).all()
     assert np.abs(exact.P(X, t)).max() > 1e-6 * np.abs(exact.F(X, t) - np.eye(3)).max()
