@@ -112,11 +112,11 @@ def needs(code: str) -> None:
 def rerun(study: Any, name: str, cells: int) -> dict[str, float]:
     """Errors of a level of a study, rms, run anew."""
     one = study.studies()[name]
-    words = next(words for words in study.commands(one, PYTHON))
-    solver = words[words.index("--solver") + 1]
-    courant = dict(zip(one["cells"], one.get("courant", [0.4] * len(one["cells"])), strict=True))[cells]
-    material = one.get("material", "neo_hookean")
-    run = Run(solver=solver, solution=one["solution"], material=material, cells=cells, ppc=4, courant=courant)
+    words = study.command(one, PYTHON)
+    given = dict(zip(words[2::2], words[3::2], strict=True))
+    run = Run(solver=given["--solver"], solution=one["solution"], material=one.get("material", "neo_hookean"),
+              cells=cells, ppc=4, courant=float(given.get("--courant", study.COURANT)),
+              precision=given.get("--precision", "double"), time_step=given.get("--time-step", "h"))  # fmt: skip
     result, _ = execute(run)
     assert result.status == "finished", (result.failure, result.log)
     return {quantity: norms["rms"] for quantity, norms in result.errors.items()}

@@ -5,7 +5,7 @@ import shlex
 from itertools import pairwise
 from math import log, log10
 
-from study import HERE, RESULTS, TOP, commands, studies
+from study import HERE, RESULTS, TOP, command, studies
 
 PAGE = TOP / "docs" / "public-codes.md"
 KEPT = 7  # significant digits of a stored error
@@ -40,7 +40,7 @@ def digits(found):
 def row(number, study, found):
     """Row of the table of a study."""
     levels = ", ".join(f"{one['cells']}: {short(one['u'])}" for one in found["runs"])
-    verdict = (found["verdict"] or {}).get("verdict", "")
+    verdict = found["verdict"]["verdict"]
     cells = [str(number), found["version"], study["method"], f"`{study['solution']}`", levels, orders(found["runs"]),
              verdict, digits(found), study["found"]]  # fmt: skip
     return "| " + " | ".join(cells) + " |"
@@ -52,6 +52,16 @@ def table():
     lines = ["| " + " | ".join(head) + " |", "| " + " | ".join(["---"] * len(head)) + " |"]
     rows = [row(k, study, stored(name)) for k, (name, study) in enumerate(studies().items(), 1)]
     return "\n".join([*lines, *rows])
+
+
+def reasons():
+    """Why a row is INCONCLUSIVE, a line each, without what to run next."""
+    open_ = [(k, stored(name)["verdict"]) for k, name in enumerate(studies(), 1)]
+    return "\n".join(
+        f"- {number}: {verdict['reason'].partition(': run with')[0].partition(': undecided')[0]}"
+        for number, verdict in open_
+        if verdict["verdict"] == "INCONCLUSIVE"
+    )
 
 
 def stress(values, mark=" | "):
@@ -102,7 +112,7 @@ def repeat():
     """Commands of all studies, in a block."""
     lines = []
     for number, study in enumerate(studies().values(), 1):
-        lines += [f"    # {number}", *(f"    {shlex.join(words)}" for words in commands(study))]
+        lines += [f"    # {number}", f"    {shlex.join(command(study))}"]
     return "\n".join(lines)
 
 
@@ -123,7 +133,8 @@ def page():
     template = (HERE / "page.md.in").read_text(encoding="utf-8")
     same = {**stored("kratos_usl_large"), "reference": [one["u"] for one in stored("tiny_symmetric")["runs"]]}
     parts = {
-        "SAME": digits(same), "TABLE": table(), "TURNED": turned(), "FACED": faced(), "ON_A_FACE": on_a_face(),
+        "SAME": digits(same), "TABLE": table(), "REASONS": reasons(), "TURNED": turned(), "FACED": faced(),
+        "ON_A_FACE": on_a_face(),
         "REPEAT": repeat(),
         "LARGE": series("kratos_usl_large"), "LARGE_REFERENCE": series("kratos_usl_large", reference=True),
         "SYMMETRIC": series("tiny_symmetric"), "USUAL": level("kratos_usl_large_tolerance", 12),

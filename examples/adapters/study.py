@@ -25,7 +25,7 @@ from mpm_verify.solver.step import advance
 
 HERE = Path(__file__).resolve().parent
 TOP, RESULTS = HERE.parent.parent, HERE / "measured"
-FRAMES = 16
+FRAMES, COURANT = 16, 0.4
 
 
 def studies():
@@ -33,23 +33,20 @@ def studies():
     return {one["name"]: one for one in tomllib.loads((HERE / "studies.toml").read_text(encoding="utf-8"))["study"]}
 
 
-def commands(study, python="python"):
-    """Commands of a study, each a list of words: one, or one a level where levels have Courant numbers of their own."""
+def command(study, python="python"):
+    """Command of a study, a list of words."""
     script = f"examples/adapters/{study['code']}/{study.get('script', 'adapter.py')}"
     solver = f"{python} {script} {{case}} {{out}} {study['arguments']}".strip()
-    common = ["verify", "mms", "--solver", solver, "--solution", study["solution"]]
-    common += ["--material", study["material"]] if "material" in study else []
-    if "courant" not in study:
-        return [[*common, "--cells", ",".join(map(str, study["cells"])), "--ppc", "4", *study["expect"]]]
-    return [[*common, "--cells", str(cells), "--ppc", "4", "--courant", str(courant), *study["expect"]]
-            for cells, courant in zip(study["cells"], study["courant"], strict=True)]  # fmt: skip
+    material = ["--material", study["material"]] if "material" in study else []
+    cells = ["--cells", ",".join(map(str, study["cells"])), "--ppc", "4"]
+    return ["verify", "mms", "--solver", solver, "--solution", study["solution"], *material, *cells, *study["expect"]]
 
 
 def answered(words, out):
     """Document and stored results of a command, in a folder."""
-    command = [sys.executable, "-m", "mpm_verify", *words[1:], "--json", "--no-page", "--jobs", "1", "--out", str(out)]
+    full = [sys.executable, "-m", "mpm_verify", *words[1:], "--json", "--no-page", "--jobs", "1", "--out", str(out)]
     path = os.pathsep.join(filter(None, [str(TOP), os.environ.get("PYTHONPATH", "")]))
-    done = subprocess.run(command, cwd=TOP, capture_output=True, text=True, env=os.environ | {"PYTHONPATH": path})
+    done = subprocess.run(full, cwd=TOP, capture_output=True, text=True, env=os.environ | {"PYTHONPATH": path})
     if done.returncode not in (0, 1, 3):
         raise SystemExit(done.stdout[-2000:] + done.stderr[-2000:])
     stored = [json.loads(file.read_text(encoding="utf-8")) for file in sorted((out / "runs").glob("*.json"))]
@@ -58,22 +55,23 @@ def answered(words, out):
 
 def run(study, python):
     """Result of a study, as it is kept."""
-    rows, versions, verdict = [], set(), None
-    for words in commands(study, python):
-        with tempfile.TemporaryDirectory() as folder:
-            document, stored = answered(words, Path(folder))
-        versions |= {one["told"] for one in stored if one.get("told")}
-        for row in document["runs"]:
-            usual = float(words[words.index("--courant") + 1]) if "--courant" in words else 0.4
-            if row["courant"] == usual:
-                errors = {name: float(f"{norms['rms']:.6e}") for name, norms in (row["errors"] or {}).items()}
-                rows.append({"cells": row["cells"], "courant": usual, **errors})
-        if "courant" not in study:
-            verdict = next({key: one[key] for key in ("verdict", "reason")} for one in document["verdicts"])
-    found = {"version": versions.pop(), "runs": rows, "verdict": verdict}
+    words = command(study, python)
+    usual = float(words[words.index("--courant") + 1]) if "--courant" in words else COURANT
+    with tempfile.TemporaryDirectory() as folder:
+        document, stored = answered(words, Path(folder))
+    (version,) = {one["told"] for one in stored if one.get("told")}
+    rows = [{"cells": row["cells"], **{name: kept(norms["rms"]) for name, norms in (row["errors"] or {}).items()}}
+            for row in document["runs"] if row["courant"] == usual]  # fmt: skip
+    verdict = next({key: one[key] for key in ("verdict", "reason")} for one in document["verdicts"])
+    found = {"version": version, "runs": rows, "verdict": verdict}
     if "reference" in study:
-        found["reference"] = [reference(study, row["cells"], row["courant"]) for row in rows]
+        found["reference"] = [reference(study, row["cells"]) for row in rows]
     return found
+
+
+def kept(error):
+    """Error with the digits that are stored."""
+    return float(f"{error:.6e}")
 
 
 class Kept(Observer):
@@ -89,16 +87,16 @@ class Kept(Observer):
             self.squares.append(((x - self.exact.x(X, model.time)) ** 2).sum(axis=1).mean())
 
 
-def reference(study, cells, courant):
+def reference(study, cells):
     """Error of u, rms over the frames, of the solver here: hats, FLIP, and the stress update that the study names."""
-    here = Run(method="mpm", solution=study["solution"], material="neo_hookean", cells=cells, ppc=4, courant=courant,
+    here = Run(method="mpm", solution=study["solution"], material="neo_hookean", cells=cells, ppc=4, courant=COURANT,
                stress=study["reference"])  # fmt: skip
     model, load, steps = setup(here)
-    kept = Kept(manufactured(here.solution, here.material), output_steps(steps, FRAMES))
-    model.watch(kept)
+    watched = Kept(manufactured(here.solution, here.material), output_steps(steps, FRAMES))
+    model.watch(watched)
     for _ in range(steps):
         advance(model, load)
-    return float(f"{sqrt(np.mean(kept.squares)):.6e}")
+    return kept(sqrt(np.mean(watched.squares)))
 
 
 def main(names):

@@ -121,5 +121,6 @@ for step in range(1, case["steps"] + 1):
     solver.FinalizeSolutionStep()
     if step in case["frames"]:
         np.savez(told.out / f"result_{step}.npz", id=order, x=read(Mpm.MP_COORD), v=read(Mpm.MP_VELOCITY))
-levels = {"v_lag": 0.5 if staggered else 0.0, "version": f"KratosMPMApplication {version('KratosMPMApplication')}"}
+levels = {"v_lag": 0.5 if staggered else 0.0, "b": "end" if later else "start",
+          "version": f"KratosMPMApplication {version('KratosMPMApplication')}"}  # fmt: skip
 (told.out / "result.json").write_text(json.dumps(levels))

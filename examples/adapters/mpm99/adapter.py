@@ -71,5 +71,5 @@ for step in range(1, case["steps"] + 1):
         found = {"x": mpm99.x.to_numpy() - shift, "v": mpm99.v.to_numpy(), "F": mpm99.F.to_numpy()}
         np.savez(told.out / f"result_{step}.npz", id=table["id"], **found)
 late = 0.0 if told.F == "now" and told.C == "exact" else 1.0
-levels = {"v_lag": 0.5, "F_lag": late, "version": f"taichi {version('taichi')}"}
+levels = {"v_lag": 0.5, "F_lag": late, "b": "start", "version": f"taichi {version('taichi')}"}
 (told.out / "result.json").write_text(json.dumps(levels))

@@ -62,5 +62,6 @@ for step in range(1, case["steps"] + 1):
         q, v, F = (a.numpy() for a in (state.particle_q, state.particle_qd, state.mpm.particle_elastic_strain))
         x = (q[:, :2] - shift).astype(np.float32)  # its digits are those of single precision
         np.savez(told.out / f"result_{step}.npz", id=table["id"], x=x, v=v, F=F)
-levels = {"v_lag": 0.5 if told.v == "half" else 0.0, "version": f"newton {version('newton')}"}
+levels = {"v_lag": 0.5 if told.v == "half" else 0.0, "b": told.b,
+          "version": f"newton {version('newton')}"}  # fmt: skip
 (told.out / "result.json").write_text(json.dumps(levels))
