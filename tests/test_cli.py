@@ -18,6 +18,7 @@ import pytest
 from mpm_verify.cases.harness.shipped import shipped
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.cases.mms import execute as mms
+from mpm_verify.cases.mms import expectations
 from mpm_verify.cases.mms.run import NORMS, QUANTITIES, Result
 from mpm_verify.solver.plugins import available
 from mpm_verify.verify.main import application, main
@@ -68,6 +69,7 @@ def verify(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], 
 def quickly(monkeypatch: pytest.MonkeyPatch) -> None:
     """Known results in place of the solver, and no page."""
     monkeypatch.setattr(mms, "execute", lambda run, tick: (fixtures._result(run), {}))
+    monkeypatch.setattr(expectations, "recorded", lambda *key: ())  # those of the fixtures are made of those of u
     monkeypatch.setattr("mpm_verify.verify.run.page_of", lambda record, vtk=False: record.store.folder / "report.html")
     monkeypatch.setattr("mpm_verify.verify.run.SMALL", float("inf"))  # worker processes would run the solver
 

@@ -19,6 +19,7 @@ from mpm_verify.cases.harness.shipped import shipped
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.cases.harness.study_file import read
 from mpm_verify.cases.mms import execute as mms
+from mpm_verify.cases.mms import expectations
 from mpm_verify.reports.export.column_files import tables
 from mpm_verify.reports.export.document import schema
 from mpm_verify.reports.frames import joined
@@ -33,6 +34,7 @@ def verify(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], 
 def made_up(monkeypatch: pytest.MonkeyPatch) -> None:
     """Known results in place of the solver."""
     monkeypatch.setattr(mms, "execute", lambda run, tick: (fixtures._result(run), {}))
+    monkeypatch.setattr(expectations, "recorded", lambda *key: ())  # those of the fixtures are made of those of u
     monkeypatch.setattr("mpm_verify.verify.run.SMALL", float("inf"))  # worker processes would run the solver
 
 

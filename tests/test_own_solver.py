@@ -326,6 +326,7 @@ def test_a_program_that_fails_is_a_result(verify: Call, tmp_path: Path, name: st
     assert says in told["runs"][0]["reason"]
 
 
+@pytest.mark.slow
 def test_a_repaired_program_is_run_again_and_judged(verify: Call, tmp_path: Path) -> None:
     """Errors of dx^2 by construction: order 2 in all digits. What failed before is not taken from the store."""
     code, told = study(verify, tmp_path, "raise SystemExit(3)", "--courant", "0.4,0.2", "--solver-version", "same")
@@ -337,6 +338,7 @@ def test_a_repaired_program_is_run_again_and_judged(verify: Call, tmp_path: Path
     assert verdict["verdict"] == "PASS"
 
 
+@pytest.mark.slow
 def test_nothing_is_judged_without_an_expectation(verify: Call, tmp_path: Path) -> None:
     code, told = study(verify, tmp_path, PERFECT, order="0")
     assert (code, told["verdicts"]) == (3, [])
@@ -445,6 +447,7 @@ def called(tmp_path: Path, solver: Callable[[Case], Any], **more: Any) -> Any:
     return mv.study("mms", solver=solver, ppc=4, out=tmp_path / "study", **axes)
 
 
+@pytest.mark.slow
 def test_a_function_is_a_solver(tmp_path: Path) -> None:
     done = called(tmp_path, by_the_book)
     done.check()
@@ -522,6 +525,7 @@ def acceleration(X: Floats, t: float) -> Floats:
     return (EXACT.v(X, t + h) - EXACT.v(X, t - h)) / (2 * h)
 
 
+@pytest.mark.slow
 def test_the_start_that_fits_is_named(tmp_path: Path) -> None:
     """The force of the toy is its own, so b does not matter; v does."""
     starts = ["half.now.start", "half.now.end", "zero.now.start", "zero.before.end"]
@@ -547,7 +551,7 @@ def wrong_at_walls(case: Case) -> Any:
 
 def test_walls_are_told_from_the_interior(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """With walls alone the command that tells is printed; with both, what it tells."""
-    more: dict[str, Any] = {"cells": [8, 12, 16, 24], "order": 2.0, "courant": [0.4, 0.2]}
+    more: dict[str, Any] = {"cells": [4, 6, 8, 12], "order": 2.0, "courant": [0.4, 0.2]}
     alone = mv.study("mms", solver=wrong_at_walls, solution="clamped_shear:G=1e-6", out=tmp_path / "a", **more)
     assert own_solver.walls(table.by_walls(alone.record)) == ""
     both = mv.study("mms", solver=wrong_at_walls, solution=["clamped_shear:G=1e-6", "bump"], out=tmp_path / "b", **more)

@@ -7,6 +7,7 @@ from typing import Any
 import numba
 import numpy as np
 import pytest
+from fixtures_export import PLANE
 
 from mpm_verify.cases.harness.runner import process_pool, run_study
 from mpm_verify.cases.harness.store import Store
@@ -185,7 +186,7 @@ needs_two = pytest.mark.skipif(numba.config.NUMBA_NUM_THREADS < 2, reason="one p
 
 
 @needs_two
-@pytest.mark.parametrize("solution", available("mpm_verify.mms.solutions"))
+@pytest.mark.parametrize("solution", PLANE)
 @every_basis
 def test_threads_give_the_same_bits(name: str, solution: str) -> None:
     assert after(name, solution, 1) == after(name, solution, 2)
