@@ -37,7 +37,7 @@ def judged(verify: Call, solution: str, cells: str, *more: str, fault: str = "")
         assert OLD in file.read_text()
         file.write_text(file.read_text().replace(OLD, FAULTS[fault]))
     typed = f"{sys.executable} toy/solver.py {{case}} {{out}}"
-    words = ["--solution", solution, "--cells", cells, "--courant", "0.4", "--as", "mpm", "--json"]
+    words = ["--solution", solution, "--cells", cells, "--courant", "0.4", "--as", "mpm", "--quick", "--json"]
     words += [] if "--out" in more else ["--out", "study"]
     _, out, _ = verify("mms", "--solver", typed, *words, *more)
     runs = [run for run in json.loads(out)["runs"] if run["courant"] == 0.4]
@@ -61,19 +61,19 @@ def test_a_plane_case_one_cell_thick_has_the_plane_digits(verify: Call) -> None:
 
 
 def order(found: list[dict[str, dict[str, float]]], quantity: str) -> float:
-    """Observed order of two levels, on 8 and 12 cells."""
+    """Observed order of two levels, on 6 and 8 cells."""
     coarse, fine = (errors[quantity]["rms"] for errors in found)
-    return log(coarse / fine) / log(12 / 8)
+    return log(coarse / fine) / log(8 / 6)
 
 
 def test_a_planted_fault_is_seen_in_f(verify: Call) -> None:
-    """At small amplitude u and v are what they were, and F does not converge any more."""
-    right = judged(verify, SWIRL, "8,12")
-    assert [f"{errors['u']['rms']:.3e}" for errors in right] == ["1.053e-08", "4.794e-09"]
-    assert 1.2 < order(right, "F") < 1.5
+    """At small amplitude u and v are what they were, and F hardly converges."""
+    right = judged(verify, SWIRL, "6,8")
+    assert [f"{errors['u']['rms']:.3e}" for errors in right] == ["1.758e-08", "1.053e-08"]
+    assert 1.4 < order(right, "F") < 1.6
     for fault in FAULTS:
-        wrong = judged(verify, SWIRL, "8,12", "--out", fault.replace(" ", "_"), fault=fault)
+        wrong = judged(verify, SWIRL, "6,8", "--out", fault.replace(" ", "_"), fault=fault)
         for quantity in ("u", "v"):
             assert order(wrong, quantity) == pytest.approx(order(right, quantity), abs=1e-3)
         assert abs(order(wrong, "F")) < 0.5
-        assert wrong[1]["F"]["rms"] > 2 * right[1]["F"]["rms"]
+        assert wrong[1]["F"]["rms"] > 1.5 * right[1]["F"]["rms"]
