@@ -199,10 +199,13 @@ def sweep(plant: Plant, solution: str, cells: tuple[int, ...] = CELLS, staggered
 
 
 def verdict(results: list[Result]) -> Verdict:
-    """What the order rule says of u in rms, with the registered expectation or that of the same solution."""
+    """What the order rule says of u in rms, with the order registered of it or of the same solution.
+
+    Recorded errors are left out: they see more, and what orders see is the matter here.
+    """
     *series, half = results
     levels = [Level(1 / r.run.cells, (r.errors["u"]["rms"],) if r.errors else (), r.failure) for r in series]
-    expectation = expected("cpdi", series[0].run.solution, "neo_hookean", 4, "u", "rms")
+    expectation = expected("cpdi", series[0].run.solution, "neo_hookean", 4, "u", "rms", usual=False)
     return judge(
         levels,
         expectation or Expectation(2.0, source="as with the default parameters"),
