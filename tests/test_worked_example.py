@@ -24,12 +24,12 @@ def blocks() -> dict[str, str]:
 
 
 def verify(folder: Path, *arguments: str) -> Any:
-    """What `verify ... --json` says of a study that is not decided."""
+    """What `verify ... --json` says of a study that does not pass."""
     done = subprocess.run(
         [sys.executable, "-m", "mpm_verify", *arguments, "--json"],
         cwd=folder, env={**os.environ, "PYTHONPATH": str(TOP)}, capture_output=True, text=True,
     )  # fmt: skip
-    assert done.returncode == 3, done.stderr
+    assert done.returncode in (1, 3), done.stderr
     return json.loads(done.stdout)
 
 
@@ -43,8 +43,8 @@ def test_three_files_are_a_basis_a_material_and_a_solution(tmp_path: Path) -> No
         "--material", "./saint_venant.py", "--cells", "8,16,32,64", "--ppc", "4",
         "--out", "study", "--jobs", "2", "--page",
     )  # fmt: skip
-    judged = {(Path(v["method"]).stem, v["expected"], v["verdict"]) for v in got["verdicts"]}
-    assert judged == {("cpdi", 2.0, "INCONCLUSIVE"), ("tent", 2.0, "INCONCLUSIVE")}  # what each promises; few levels
+    judged = {(Path(v["method"]).stem, v["expected"], v["verdict"]) for v in got["verdicts"] if v["quantity"] == "u"}
+    assert judged == {("cpdi", 2.0, "INCONCLUSIVE"), ("tent", 2.0, "FAIL")}  # hats do not keep it where particles cross
     runs = [(Path(r["method"]).stem, r) for r in got["runs"] if r["status"] == "finished"]
     errors = {(method, r["cells"]): r["errors"]["u"]["rms"] for method, r in runs}
     assert errors["tent", 8] == pytest.approx(errors["mpm", 8], rel=1e-6)  # the same basis in other words
