@@ -2,18 +2,15 @@
 
 from collections.abc import Sequence
 
-import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
-from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from mpm_verify.cases.mms.digits.examine import Moment
 from mpm_verify.cases.mms.digits.records import Parting
 from mpm_verify.reports import words
 from mpm_verify.reports.figures import style
-from mpm_verify.reports.figures.error_field import OUTLINED, limits
+from mpm_verify.reports.figures.error_field import draw
 
 WIDTH, HEIGHT = 4.4, 4.7  # inches of a panel
 
@@ -35,15 +32,7 @@ def difference(moments: Sequence[Moment], partings: Sequence[Parting]) -> Figure
 
 def _draw(figure: Figure, axes: Axes, moment: Moment, name: str) -> None:
     """Draw how far each particle is off, on its domain."""
-    off, corners = moment.off[name], moment.corners
-    outline = 0.35 if len(corners) <= OUTLINED else 0.0
-    patches = PolyCollection(list(corners), cmap="cividis", edgecolors="white" if outline else "face")
-    patches.set(array=off, linewidths=outline or 0.2, rasterized=True)
-    patches.set_clim(0.0, float(np.nanmax(off)) or 1.0)
-    axes.add_collection(patches)
-    axes.set(aspect="equal", xlabel="x", ylabel="y", xlim=limits(corners, 0), ylim=limits(corners, 1))
-    bar = figure.colorbar(patches, ax=axes, location="bottom", shrink=0.9, aspect=28, pad=0.02)
-    bar.locator, bar.formatter = MaxNLocator(4), FuncFormatter(style.number)
+    bar = draw(figure, axes, moment.corners, moment.off[name])
     bar.set_label(f"|{words.quantity(name)} {words.MINUS} {words.quantity(name)} of the nearest reference|")
     axes.set_title(f"{words.quantity(name)}, frame {moment.frame}, step {moment.step}", loc="left", fontweight="bold")
 

@@ -6,7 +6,9 @@ with the parallelograms x ± r1 ± r2, r_i = F r0_i: Sadeghirad, Brannon & Burgh
 
 import numpy as np
 from matplotlib import rc_context
+from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
+from matplotlib.colorbar import Colorbar
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 from numpy.typing import NDArray
@@ -16,6 +18,7 @@ from mpm_verify.cases.mms.run import Run
 from mpm_verify.reports import words
 from mpm_verify.reports.figures import style
 from mpm_verify.reports.frames import Record
+from mpm_verify.solver.state import Floats
 
 CELLS, PPC = 16, 4  # fine enough to show the field, coarse enough to see each domain
 CORNERS = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
@@ -44,14 +47,7 @@ def error_field(run: Run, arrays: Arrays) -> Figure:
     with rc_context(style.RC | {"axes.grid": False}):
         figure = Figure(figsize=(5.0, 5.2), layout="constrained")
         axes = figure.subplots()
-        outline = 0.35 if len(corners) <= OUTLINED else 0.0
-        patches = PolyCollection(list(corners), cmap="cividis", edgecolors="white" if outline else "face")
-        patches.set(array=error, linewidths=outline or 0.2, rasterized=True)
-        patches.set_clim(0.0, float(np.nanmax(error)) or 1.0)
-        axes.add_collection(patches)
-        axes.set(aspect="equal", xlabel="x", ylabel="y", xlim=limits(corners, 0), ylim=limits(corners, 1))
-        bar = figure.colorbar(patches, ax=axes, location="bottom", shrink=0.9, aspect=28, pad=0.02)
-        bar.locator, bar.formatter = MaxNLocator(4), FuncFormatter(style.number)
+        bar = draw(figure, axes, corners, error)
         bar.set_label("|error of u| at the last step")
         axes.set_title(
             f"{words.series(run)}, {run.cells} {words.TIMES} {run.cells} cells", loc="left", fontweight="bold"
@@ -64,3 +60,16 @@ def limits(corners: NDArray[np.float64], axis: int) -> tuple[float, float]:
     values = corners[..., axis][np.isfinite(corners[..., axis])]
     low, high = (float(values.min()), float(values.max())) if len(values) else (0.0, 1.0)
     return low - 0.015 * (high - low), high + 0.015 * (high - low)
+
+
+def draw(figure: Figure, axes: Axes, corners: Floats, values: Floats) -> Colorbar:
+    """Draw values (P,), from zero up, on domains with corners (P,4,2); gives the colour bar."""
+    outline = 0.35 if len(corners) <= OUTLINED else 0.0
+    patches = PolyCollection(list(corners), cmap="cividis", edgecolors="white" if outline else "face")
+    patches.set(array=values, linewidths=outline or 0.2, rasterized=True)
+    patches.set_clim(0.0, float(np.nanmax(values)) or 1.0)
+    axes.add_collection(patches)
+    axes.set(aspect="equal", xlabel="x", ylabel="y", xlim=limits(corners, 0), ylim=limits(corners, 1))
+    bar = figure.colorbar(patches, ax=axes, location="bottom", shrink=0.9, aspect=28, pad=0.02)
+    bar.locator, bar.formatter = MaxNLocator(4), FuncFormatter(style.number)
+    return bar
