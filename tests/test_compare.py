@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from fixtures_command import Call, caller, one_line
+from fixtures_export import SOLID
 
 import mpm_verify as mv
 from mpm_verify.cases.mms.case import canonical
@@ -514,3 +515,9 @@ def test_digits_of_a_spin_that_was_dropped_in_a_public_code(
     assert f"{told['rms']['u']:.3e}" == known
     assert told["references"][0]["stress"] == "usl"
     assert 1 < told["references"][0]["digits"]["u"] < 2
+
+
+@pytest.mark.parametrize("solution", SOLID)
+def test_three_dimensions_are_not_compared(verify: Call, solution: str) -> None:
+    said = verify("compare", "--solver", f"{sys.executable} x.py {{case}} {{out}}", "--solution", solution)
+    assert f"{solution} has three dimensions" in one_line(said)

@@ -25,7 +25,12 @@ def run_of(solver: str | Callable[..., Any], solution: str, material: str | None
         from mpm_verify.cases.mms.external.callables import register
 
         solver = register(solver)
-    run = Run(**canonical({"solver": solver, "solution": solution, "material": material or ""}), **more)
+    named = canonical({"solver": solver, "solution": solution, "material": material or ""})
+    if named["dim"] == 3:
+        raise ValueError(
+            f"{solution} has three dimensions, and the reference two; choose --solution clamped_shear:G=0.05"
+        )
+    run = Run(**named, **more)
     check([run])
     return run
 
