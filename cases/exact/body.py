@@ -1,0 +1,181 @@
+"""Small bodies that exact tests are made on: a few cells, several blocks of particles and two slabs, generic states.
+
+Nothing here is at a special position: the offset leaves no particle on a face or at the middle of a cell, F has shear
+and rotation and det F is not 1, and rows of random numbers come from one seed.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from math import cos, sin
+from typing import Any
+
+import numpy as np
+
+from mpm_verify.solver.boundary import Kind, Walls, box, moving
+from mpm_verify.solver.layout import Layout, rectangle
+from mpm_verify.solver.plugins import MATERIALS, METHODS, TRANSFERS, available, create
+from mpm_verify.solver.state import Floats, Grid, Particles
+from mpm_verify.solver.step import Model, Scheme
+from mpm_verify.solver.stress_update import Stress
+
+DX, CELLS, MARGIN_CELLS = 0.3, np.array([10, 9]), 3  # side of a cell, cells of the grid, and those around the body
+PPC, OFFSET = 4, (0.2, -0.15)
+COURANT = 0.3
+SEED = 20221
+FREE: Kind = "free"
+STRAINED = np.array([[1.06, 0.17], [-0.08, 0.97]])  # F at the start: sheared and turned, det F = 1.04
+MIRROR = np.array([[-1.0, 0.0], [0.0, 1.0]])
+QUARTER = np.array([[0.0, -1.0], [1.0, 0.0]])
+STRESS_UPDATES: tuple[Stress, ...] = ("usl", "musl", "usf")
+TRANSFER_NAMES = ("flip", "flip:fraction=0.9", "pic", "apic", "fmpm")
+Sides = Kind | tuple[Kind, Kind, Kind, Kind]
+Rule = Callable[[Floats, float, float], tuple[Any, Floats, Floats]]
+
+
+@dataclass(frozen=True)
+class Subject:
+    """What is tested: a method and a material by their specifications."""
+
+    method: str
+    material_name: str
+
+    @cached_property
+    def basis(self) -> Any:
+        """Basis of the method."""
+        return create(METHODS, self.method)
+
+    @cached_property
+    def material(self) -> Any:
+        """Constitutive model."""
+        return create(MATERIALS, self.material_name)
+
+    @cached_property
+    def speed(self) -> float:
+        """Speed of the fastest wave, the scale of velocities."""
+        return float(self.material.wave_speed())
+
+    @property
+    def stress(self) -> float:
+        """Scale of stresses: rho0 c^2."""
+        return float(self.material.rho0) * self.speed**2
+
+    @property
+    def dt(self) -> float:
+        """Length of a step, below the stable one."""
+        return COURANT * DX / self.speed
+
+    @property
+    def support(self) -> int:
+        """Support nodes of a particle: terms of a sum over nodes."""
+        return int(self.basis.support)
+
+
+@dataclass(frozen=True)
+class Variant:
+    """Transfer and stress update of a step."""
+
+    transfer: str = "flip"
+    stress: Stress = "usl"
+
+    @property
+    def scheme(self) -> Scheme:
+        """Choices of the step."""
+        return Scheme(create(TRANSFERS, self.transfer), self.stress)
+
+    def __str__(self) -> str:
+        return f"{self.transfer} {self.stress}"
+
+
+def variants() -> list[Variant]:
+    """Variants of a step: every transfer with every stress update, and a blend of FLIP and PIC."""
+    more = [name for name in available(TRANSFERS) if name not in TRANSFER_NAMES]
+    return [Variant(transfer, stress) for transfer in (*TRANSFER_NAMES, *more) for stress in STRESS_UPDATES]
+
+
+def grid(turned: bool = False) -> Grid:
+    """Grid of a few cells, whose sides differ; with its sides swapped where it is `turned`."""
+    return Grid(DX, np.zeros(2), DX * (CELLS[::-1] if turned else CELLS))
+
+
+def layout(filled: bool = False) -> Layout:
+    """Layout of a rectangle away from the sides of the grid, or of one that fills it."""
+    around = 0 if filled else MARGIN_CELLS
+    return rectangle(DX * around * np.ones(2), DX * (CELLS - around), DX, PPC, OFFSET)
+
+
+def deformed(F: Floats) -> Callable[[Floats], Floats]:
+    """Map of reference positions (n,2) by F (2,2) about the middle of the grid."""
+    middle = 0.5 * DX * CELLS
+    return lambda X: middle + (X - middle) @ F.T
+
+
+def random(*shape: int, seed: int = SEED) -> Floats:
+    """Numbers between -1 and 1, the same at each call."""
+    numbers: Floats = np.random.default_rng(seed).uniform(-1.0, 1.0, shape)
+    return numbers
+
+
+def populated(subject: Subject, pieces: Layout, F: Floats) -> Particles:
+    """Particles of a layout, deformed uniformly by F (2,2)."""
+    p: Particles = subject.basis.populate(pieces, subject.material.rho0, deformed(F))
+    p.x[:], p.F[:] = deformed(F)(p.X), F
+    return p
+
+
+def shaken(subject: Subject, p: Particles, strain: float = 0.03) -> Particles:
+    """Particles with random v, F, sigma and b beside what they have; sigma within strength, compression at first."""
+    count = len(p)
+    p.v[:] = 0.05 * subject.speed * random(count, 2)
+    p.b[:] = 0.5 * subject.speed**2 / DX * random(count, 2, seed=1)
+    p.F[:] = p.F @ (np.eye(2) + strain * random(count, 2, 2, seed=2))
+    p.sigma[:] = 1e-3 * subject.stress * (0.2 * random(count, 4, seed=3) - (1.0, 1.0, 1.0, 0.0))
+    return p
+
+
+def modelled(
+    subject: Subject, p: Particles, variant: Variant, walls: Walls | Sides = FREE, turned: bool = False, **more: Any
+) -> Model:
+    """Model of particles on the grid, its walls by their kind or as they are; `more` goes to Model."""
+    g = grid(turned)
+    held = walls if isinstance(walls, Walls) else box(g, walls)
+    return Model(g, p, subject.basis, subject.material, held, subject.dt, variant.scheme, **more)
+
+
+def ruled(rule: Rule) -> Walls:
+    """Walls that a rule moves, see solver.boundary.moving."""
+    return moving(grid(), rule)
+
+
+def turn(angle: float) -> Floats:
+    """Rotation (2,2) by an angle, counter-clockwise."""
+    return np.array([[cos(angle), -sin(angle)], [sin(angle), cos(angle)]])
+
+
+def tensors(sigma: Floats) -> Floats:
+    """Plane stresses (...,2,2) of sigma xx, yy, zz, xy (...,4)."""
+    xy = sigma[..., 3]
+    full: Floats = np.stack([np.stack([sigma[..., 0], xy], -1), np.stack([xy, sigma[..., 1]], -1)], -2)
+    return full
+
+
+def columns(plane: Floats, zz: Floats) -> Floats:
+    """Stresses xx, yy, zz, xy (...,4) of plane stresses (...,2,2) and zz (...)."""
+    sigma: Floats = np.stack([plane[..., 0, 0], plane[..., 1, 1], zz, plane[..., 0, 1]], -1)
+    return sigma
+
+
+def rotated(sigma: Floats, Q: Floats) -> Floats:
+    """Stress Q sigma Q^T of sigma (...,4) and Q (2,2), a rotation or mirror."""
+    return columns(Q @ tensors(sigma) @ Q.T, sigma[..., 2])
+
+
+def by_id(p: Particles, name: str) -> Floats:
+    """Array of particles in their initial order."""
+    found: Floats = p.in_initial_order(name)
+    return found
+
+
+def rest(particles: Particles, t: float) -> None:
+    """No body force acts."""
+    particles.b[:] = 0.0

@@ -1,0 +1,84 @@
+"""Rigid motion under uniform forces: free fall, a throw and an oscillator, with damping, against sums over the steps."""
+
+from collections.abc import Callable
+from math import pi
+
+import numpy as np
+
+from mpm_verify.cases.exact.body import DX, Subject, Variant, by_id, layout, modelled, populated, variants
+from mpm_verify.cases.exact.tested import Part, Tested, bound, off
+from mpm_verify.solver.damping import Damping
+from mpm_verify.solver.failure import RunFailed
+from mpm_verify.solver.state import Floats, Particles
+from mpm_verify.solver.step import Model, advance
+
+STEPS, ALPHA = 10, 0.3
+Force = Callable[[Floats, float], Floats]  # of the shift (2,) of the body and the time: force per mass (2,)
+
+
+def tests(subject: Subject) -> list[Tested]:
+    """Free fall with every step; a throw with each damping, and an oscillator."""
+    c, dt = subject.speed, subject.dt
+    g, more = 0.02 * c / dt * np.array([0.2, -0.9]), 0.003 * c / dt**2 * np.array([0.4, 0.5])
+    thrown = c * np.array([0.3, 0.12])
+
+    def growing(shift: Floats, t: float) -> Floats:
+        return g + more * t
+
+    def spring(shift: Floats, t: float) -> Floats:
+        return -((2 * pi / (8.3 * dt)) ** 2) * (shift - 0.1 * DX)
+
+    found = [rigid(subject, "fall", variant, None, growing, thrown) for variant in variants()]
+    for kind in ("local", "objective"):
+        damping = Damping(ALPHA, kind)  # type: ignore[arg-type]
+        found.append(rigid(subject, f"throw_damped_{kind}", Variant(), damping, growing, thrown))
+        found.append(rigid(subject, f"oscillator_{kind}", Variant(), damping, spring, 0 * thrown))
+    return found
+
+
+def rigid(subject: Subject, name: str, variant: Variant, damping: Damping | None, force: Force, v0: Floats) -> Tested:
+    """Test of a body that moves as one: x, v, F and sigma of all particles against a sum over the steps."""
+    p = populated(subject, layout(), np.eye(2))
+    p.v[:] = v0
+    model = modelled(subject, p, variant, damping=damping)
+    X, v, shift = by_id(p, "x"), v0.copy(), np.zeros(2)
+    worst = 0.0
+    part = Part.DAMPING if damping else Part.MOTION
+    name = f"{name} {variant}"
+    try:
+        for step in range(STEPS):
+            acceleration = force(shift, step * model.dt)
+            advance(model, loaded(force, X))
+            v = v + model.dt * (acceleration - taken(damping, acceleration, v))
+            shift = shift + model.dt * v
+            worst = max(
+                worst, off(by_id(p, "x"), X + shift, DX), off(by_id(p, "v"), v, subject.speed), still(subject, model)
+            )
+    except RunFailed:
+        worst = np.inf
+    return Tested(name, worst, bound(2 * STEPS * subject.support), part)
+
+
+def loaded(force: Force, X: Floats) -> Callable[[Particles, float], None]:
+    """Load of a force per mass on all particles, by the mean shift of the body from X."""
+
+    def load(particles: Particles, t: float) -> None:
+        particles.b[:] = force((particles.x - X[particles.id]).mean(axis=0), t)
+
+    return load
+
+
+def taken(damping: Damping | None, f: Floats, v: Floats) -> Floats:
+    """Force per mass (2,) that damping takes, by the velocity before the step."""
+    if damping is None:
+        return 0 * f
+    if damping.kind == "local":
+        return damping.alpha * np.abs(f) * np.sign(v)
+    speed = float(np.hypot(*v))
+    return damping.alpha * float(np.hypot(*f)) / speed * v if speed else 0 * f
+
+
+def still(subject: Subject, model: Model) -> float:
+    """Distance of F from the unit tensor, and of sigma from zero over rho0 c^2."""
+    p = model.particles
+    return max(off(p.F, np.eye(2), 1.0), off(p.sigma, 0.0, subject.stress))
