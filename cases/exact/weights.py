@@ -1,12 +1,22 @@
 """Weights of the basis on a strained body: what every basis reproduces, the domains that it averages over, and sums."""
 
+from functools import partial
+
 import numpy as np
 
 from mpm_verify.cases.exact.body import (
-    DX, STRAINED, Subject, Variant, layout, modelled, populated, random, shaken,
+    DX,
+    STRAINED,
+    Subject,
+    Variant,
+    layout,
+    modelled,
+    populated,
+    random,
+    shaken,
 )  # fmt: skip
 from mpm_verify.cases.exact.dense import weights
-from mpm_verify.cases.exact.tested import Part, Reason, Tested, bound, not_asked, off
+from mpm_verify.cases.exact.tested import Pairs, Part, Reason, Tested, attempt, bound, farthest, not_asked, off
 from mpm_verify.solver.state import Floats
 from mpm_verify.solver.step import Model, particles_to_grid
 
@@ -14,8 +24,13 @@ from mpm_verify.solver.step import Model, particles_to_grid
 def tests(subject: Subject) -> list[Tested]:
     """Moments of the weights, domains, and sums over the nodes with each transfer that adds to them."""
     model = modelled(subject, populated(subject, layout(), STRAINED), Variant())
-    found = [moments(subject, model), domain_moment(subject, model), *areas(subject, model)]
-    return found + [one for transfer in ("flip", "apic") for one in balances(subject, Variant(transfer))]
+    found = attempt("moments", Part.WEIGHTS, partial(moments, subject, model))
+    found += attempt("positive", Part.WEIGHTS, partial(positive, subject, model))
+    found += attempt("domain_moment", Part.DOMAINS, partial(domain_moment, subject, model))
+    found += attempt("domain_area", Part.DOMAINS, partial(areas, subject, model))
+    for transfer in ("flip", "apic"):
+        found += attempt(f"sum_mass {transfer}", Part.TO_GRID, partial(balances, subject, Variant(transfer)))
+    return found
 
 
 def moments(subject: Subject, model: Model) -> Tested:
@@ -23,8 +38,21 @@ def moments(subject: Subject, model: Model) -> Tested:
     p = model.particles
     w, away = weights(model, p.x, p.F), (model.grid.nodes - 1.5) / DX
     L = np.einsum("pnb,na->pab", w.dN * DX, away)
-    pairs = [(w.N.sum(axis=1), 1.0), ((w.dN * DX).sum(axis=1), 0.0), (w.N @ away, (p.x - 1.5) / DX), (L, np.eye(2))]
-    return Tested("moments", max(off(*pair, 1.0) for pair in pairs), bound(4 * subject.support), Part.WEIGHTS)
+    pairs: Pairs = [
+        (w.N.sum(axis=1), 1.0, 1.0),
+        ((w.dN * DX).sum(axis=1), 0.0, 1.0),
+        (w.N @ away, (p.x - 1.5) / DX, 1.0),
+        (L, np.eye(2), 1.0),
+    ]
+    return Tested("moments", farthest(pairs), bound(4 * subject.support), Part.WEIGHTS)
+
+
+def positive(subject: Subject, model: Model) -> Tested:
+    """Shape values are not negative, and so no node is outside the support."""
+    if not subject.basis.positive:
+        return not_asked("positive", Part.WEIGHTS, Reason.NEGATIVE)
+    least = weights(model, model.particles.x, model.particles.F).N.min()
+    return Tested("positive", off(min(least, 0.0), 0.0, 1.0), bound(1), Part.WEIGHTS)
 
 
 def domain_moment(subject: Subject, model: Model) -> Tested:
@@ -99,7 +127,7 @@ def balances(subject: Subject, variant: Variant) -> list[Tested]:
     }
     parts = {"virtual_work": Part.TO_GRID}
     return [
-        Tested(f"{name} {variant.transfer}", max(off(*pair) for pair in found), bound(subject.support + 10),
+        Tested(f"{name} {variant.transfer}", farthest(found), bound(subject.support + 10),
                parts.get(name, Part.TO_GRID))
         for name, found in pairs.items()
     ]  # fmt: skip
