@@ -6,8 +6,8 @@ from mpm_verify.cases.exact.tested import Tested
 
 # Tests of each group, a file of this folder with `tests(subject)`.
 GROUPS = {
-    "weights": ("moments", "positive", "domain_moment", "domain_area", "shared_corners", "sum_mass", "sum_momentum", "sum_force",
-                "virtual_work"),
+    "weights": ("moments", "positive", "domain_moment", "domain_area", "shared_corners", "sum_mass", "sum_momentum",
+                "sum_force", "virtual_work"),
     "motion": ("fall", "throw_damped_local", "throw_damped_objective", "oscillator_local", "oscillator_objective"),
     "walls": ("slide", "no_force_free", "no_force_roller", "no_force_fixed"),
     "step": ("step", "affine", "domain_motion"),

@@ -110,7 +110,7 @@ def admissible(subject: Subject) -> Tested:
     sine, cohesive = strength(material)
     s, t = circle(sheared(subject, steps=8).sigma)
     excess = np.maximum(t - s * sine - cohesive, 0.0)
-    return Tested(name, off(excess, 0.0, subject.stress), bound(16), Part.STRESS)
+    return Tested(name, off(excess, 0.0, CONFINED * subject.stress), bound(64), Part.STRESS)
 
 
 def cut_off(subject: Subject) -> Tested:
@@ -126,7 +126,8 @@ def cut_off(subject: Subject) -> Tested:
     size = 20 * (CONFINED * subject.stress + apex) / stiffness(material, CONFINED * subject.stress)
     D = symmetric(size * np.array([1.0, 1.1, 0.1]) * np.ones((POINTS, 1)))
     point = drive(material, [np.broadcast_to(np.eye(2), D.shape).copy(), straight(D)], start)
-    plane = off(point.sigma[:, [0, 1, 3]], np.array([tension, tension, 0.0]), subject.stress)
+    unit = CONFINED * subject.stress + tension
+    plane = off(point.sigma[:, [0, 1, 3]], np.array([tension, tension, 0.0]), unit)
     zz = point.sigma[:, 2] - tension
     beyond = np.abs(zz) if tension == apex or material.moduli is not None else np.maximum(zz, 0.0)
-    return Tested(name, max(plane, off(beyond, 0.0, subject.stress)), bound(16), Part.CUT_OFF)
+    return Tested(name, max(plane, off(beyond, 0.0, unit)), bound(64), Part.CUT_OFF)

@@ -25,7 +25,7 @@ HELD = {
     "positive": "no shape value is negative",
     "domain_moment": "Σ N x_i y_i is the mean of x y over the corners of the domain",
     "domain_area": "the area of each domain is the volume that it stands for",
-    "shared_corners": "corners of adjacent domains coincide after a uniform strain",
+    "shared_corners": "corners of domains are those of adjacent pieces of the body, which share them",
     "sum_mass": "mass and its first moment, nodes against particles",
     "sum_momentum": "momentum and its first moment, nodes against particles",
     "sum_force": "the sum of nodal forces is that of the body forces",
