@@ -7,7 +7,7 @@ from math import pi
 import numpy as np
 
 from mpm_verify.cases.exact.body import DX, Subject, Variant, by_id, layout, modelled, populated, variants
-from mpm_verify.cases.exact.tested import Part, Tested, attempt, bound, off
+from mpm_verify.mms.constitutive.tested import Part, Tested, attempt, bound, off
 from mpm_verify.solver.damping import Damping
 from mpm_verify.solver.state import Floats, Particles
 from mpm_verify.solver.step import Model, advance

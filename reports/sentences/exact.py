@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from mpm_verify.cases.exact.case import ExactRemark as Code
-from mpm_verify.cases.exact.tested import FAILED, Part, Reason
+from mpm_verify.mms.constitutive.tested import FAILED, Part, Reason
 from mpm_verify.reports.sentences.remarks import Words
 
 Numbers = Mapping[str, Any]
