@@ -5,8 +5,8 @@ from collections.abc import Iterator
 import pytest
 from fixtures_planted import DEFECTS, PLACEBOS, Defect, Plant
 
+from mpm_verify.cases.exact import battery
 from mpm_verify.cases.exact.battery import run
-from mpm_verify.cases.exact.battery import tested as tests_of
 from mpm_verify.cases.exact.body import Subject
 from mpm_verify.cases.exact.groups import GROUPS, group_of
 from mpm_verify.mms.constitutive.tested import MARGIN, Tested
@@ -37,7 +37,7 @@ def groups(method: str, material: str, *tests: str) -> list[Tested]:
     """Tests of the groups that some tests belong to."""
     names = dict.fromkeys(map(group_of, tests))
     subject = Subject(method, material)
-    return [one for name in names for one in tests_of(name, subject)]
+    return [one for name in names for one in battery.tested(name, subject)]
 
 
 @pytest.mark.parametrize("material", ["neo_hookean", "mohr_coulomb"])
