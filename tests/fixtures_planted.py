@@ -583,7 +583,9 @@ DEFECTS = {
     "no body force": Defect(to_grid(body_force(0.0)), ("fall", "sum_force", "step")),
     "body force 1 % high": Defect(to_grid(body_force(1.01)), ("fall", "sum_force", "step")),
     "body force at t + dt": Defect(late_load, ("fall",)),
-    "last particle skipped": Defect(to_grid(without_last), ("sum_mass", "sum_momentum", "step")),
+    "last particle skipped": Defect(
+        to_grid(without_last), ("sum_mass", "sum_momentum", "step", "budget"), material="hypoelastic"
+    ),
     "current volume as mass": Defect(to_grid(volume_as_mass), ("sum_mass", "step")),
     "reaction handed on": Defect(reaction_handed_on, ("no_force_roller", "no_force_fixed", "step")),
     "a wall missing": Defect(wall_missing, ("step",)),
@@ -636,6 +638,7 @@ DEFECTS = {
     "all parts smoothed": Defect(all_parts, ("smoothing_parts",), material="hypoelastic"),
     "exponent of three dimensions": Defect(exponent, ("smoothing_ratio",), material="hypoelastic"),
     "stress counted four times": Defect(to_grid(fourfold_stress), ("stable_step", "virtual_work")),
+    "move not counted": Defect(to_particles(longer_move), ("budget",), material="hypoelastic"),
     "state that is not stored": Defect(hidden_state, ("restart",)),
 }
 

@@ -4,7 +4,8 @@
 GROUPS = {
     "weights": ("moments", "positive", "domain_moment", "domain_area", "shared_corners", "sum_mass", "sum_momentum",
                 "sum_force", "virtual_work"),
-    "motion": ("fall", "throw_damped_local", "throw_damped_objective", "oscillator_local", "oscillator_objective"),
+    "motion": ("fall", "throw_damped_local", "throw_damped_objective", "oscillator_local", "oscillator_objective",
+               "budget"),
     "walls": ("slide", "no_force_free", "no_force_roller", "no_force_fixed"),
     "step": ("step", "affine", "domain_motion"),
     "symmetry": ("mirror", "quarter_turn"),
