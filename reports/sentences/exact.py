@@ -84,7 +84,7 @@ PARTS = {
     Part.CUT_OFF: "the tension cut-off or the apex of the constitutive model",
     Part.SMOOTHING: "solver/smoothing",
     Part.STATE: "something that a step needs and the arrays of the particles do not hold",
-    Part.BUDGET: "solver/energy_budget.py, or what moves, strains or damps the body without being counted",
+    Part.BUDGET: "what moves, strains or damps the body without being counted, or solver/energy_budget.py",
     Part.TIME_STEP: "check_time_step in solver/model.py, or the wave speed of the constitutive model",
 }
 REASONS = {
