@@ -30,6 +30,10 @@ class Material:
         ``stored_energy(sigma)``: elastic energy per volume (P,) under sigma (P,4).
     memory
         Names of the columns of particles.history; "void" is the void strain, solver/voids.py.
+    sums
+        Those of them that are sums over the steps, and that nothing else of the model reads.
+    small_strain
+        Whether the stress is dW/dF itself: that of a function of F for small amplitudes alone.
     yields_in_plane
         Whether it yields where t = s sin(friction_angle) + cohesion cos(friction_angle).
     order
@@ -47,6 +51,8 @@ class Material:
     moduli: Callable[[float], tuple[float, float]] | None = None
     stored_energy: Callable[[Floats], Floats] | None = None
     memory: ClassVar[tuple[str, ...]] = ()
+    sums: ClassVar[tuple[str, ...]] = ()
+    small_strain: ClassVar[bool] = False
     yields_in_plane: ClassVar[bool] = False
     order: ClassVar[float | None] = None
     formula: ClassVar[str] = ""

@@ -61,6 +61,7 @@ class Cpdi(Basis):
     order: ClassVar[float] = 2.0
     fill = staticmethod(fill)
     domain_size: ClassVar[int] = 4
+    domain_motion: ClassVar[str] = "deformed"
     has_limit: ClassVar[bool] = True
 
     def __post_init__(self) -> None:

@@ -90,6 +90,7 @@ class Cpdi2(Basis):
     order: ClassVar[float] = 2.0
     fill = staticmethod(fill)
     domain_size: ClassVar[int] = 8
+    domain_motion: ClassVar[str] = "deformed"
 
     @classmethod
     def promises(cls, crossing: bool) -> Promise:

@@ -72,6 +72,7 @@ class Cpgimp(Basis):
     order: ClassVar[float] = 2.0
     fill = staticmethod(fill)
     domain_size: ClassVar[int] = 2
+    domain_motion: ClassVar[str] = "stretched"
 
     @staticmethod
     def domain(layout: Layout, position: Position) -> Floats:

@@ -78,6 +78,7 @@ class Gimp(Basis):
     order: ClassVar[float] = 2.0
     fill = staticmethod(fill)
     domain_size: ClassVar[int] = 2
+    domain_motion: ClassVar[str] = "fixed"
 
     @classmethod
     def promises(cls, crossing: bool) -> Promise:

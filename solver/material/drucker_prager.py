@@ -120,6 +120,7 @@ class DruckerPrager(RateMaterial, Elastic):
     cone: str = "plane_strain"
     void: float = 0.0
     memory: ClassVar[tuple[str, ...]] = ("gamma_p", "eps_v_p", "void")
+    sums: ClassVar[tuple[str, ...]] = ("gamma_p", "eps_v_p")
     order: ClassVar[float | None] = 1.0
     respond = staticmethod(respond)
 

@@ -44,6 +44,7 @@ class LinearElastic(Elastic):
         For a parameter that is out of range.
     """
 
+    small_strain: ClassVar[bool] = True
     formula: ClassVar[str] = "P*F^T/J with P = lam*tr(e)*I + 2*mu*e and e = (F + F^T)/2 - I"
 
     def energy(self, F: Any, log: Callable[[Any], Any]) -> Any:

@@ -137,6 +137,7 @@ class MohrCoulomb(RateMaterial, Elastic):
     sigma_t: float = 0.0
     void: float = 0.0
     memory: ClassVar[tuple[str, ...]] = ("gamma_p", "eps_v_p", "void")
+    sums: ClassVar[tuple[str, ...]] = ("gamma_p", "eps_v_p")
     order: ClassVar[float | None] = 1.0
     yields_in_plane: ClassVar[bool] = True
     respond = staticmethod(respond)

@@ -219,6 +219,7 @@ class Ubcsand(RateMaterial):
     reversal: float = 0.0
     void: float = 0.0
     memory: ClassVar[tuple[str, ...]] = MEMORY
+    sums: ClassVar[tuple[str, ...]] = ("gamma_p", "eps_v_p", "work_p")
     yields_in_plane: ClassVar[bool] = True
     order: ClassVar[float | None] = 2.0
     respond = staticmethod(respond)
