@@ -14,7 +14,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mpm_verify.cases.judging.fit import Array, asymptotic_window, contamination, fit_slope, local_orders
+from mpm_verify.cases.judging.contamination import contamination
+from mpm_verify.cases.judging.fit import Array, asymptotic_window, fit_slope, local_orders
 from mpm_verify.cases.judging.order import Expectation, Level, Outcome, Quantity, Verdict, judge, judge_family
 from mpm_verify.cases.judging.records import Action, Ended, ReasonCode, Recorded, Wanted
 from mpm_verify.reports.sentences import verdicts

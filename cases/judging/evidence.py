@@ -56,7 +56,7 @@ def tail(q: Quantity) -> Reason | None:
         q.expectation.order is None
         or len(fit.orders) < LEVELS - 1
         or fit.lowest <= CLEAR * q.floor
-        or fit.rises_to(low)
+        or (fit.settled or fit).rises_to(low)
     ):
         return None
     first, last = (float(order) for order in fit.orders[-2:])
