@@ -1,16 +1,22 @@
 """Power and safety of the order rule: counting over known sequences, intervals, what no rule can tell, the page."""
 
+import json
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
+from fixtures_command import TOP, caller, one_line, process
 
 from mpm_verify.cases.judging.fit import local_orders
 from mpm_verify.cases.judging.known import CELLS, KNOWN, Known
 from mpm_verify.cases.judging.power import CLEAN, Promise, Row, interval, measure, promises, row
 from mpm_verify.cases.mms.run import AXES, QUICK
+from mpm_verify.reports.export import power as files
+from mpm_verify.verify.commands import power as command
 
+DOCS = TOP / "docs"
 NAMES = [known.name for known in KNOWN]
 
 
@@ -40,7 +46,7 @@ def test_levels_are_those_of_the_studies() -> None:
         ("h^2 + 0.005 h", "default", 0.005 / (0.005 + 1 / 128)),
         ("h^2 + 0.005 h", "quick", 0.005 / (0.005 + 1 / 32)),
         ("h^2 + 1e-5", "default", 1e-5 / (1e-5 + 2**-14)),
-        ("h^2, 40% of h in the square", "six levels", 0.4),
+        ("40% of h in the square", "six levels", 0.4),
     ],
 )
 def test_what_is_not_of_second_order(name: str, levels: str, other: float) -> None:
@@ -67,7 +73,7 @@ def test_local_orders_of_the_sequences(levels: str) -> None:
 
 def test_random_signs_add_in_the_square() -> None:
     """The mean over draws is the root of the sum of squares; one draw is off by 2ab/(a² + b²) over sqrt(N)."""
-    one, h = known("h^2, 50% of h in the square"), sizes("default")
+    one, h = known("50% of h in the square"), sizes("default")
     rng = np.random.default_rng(1)
     drawn = np.array([one.drawn(h, 0.0, rng) for _ in range(2000)])
     assert drawn.mean(axis=0) == pytest.approx(one.error(h), rel=5e-4)
@@ -162,3 +168,61 @@ def test_every_sequence_is_measured_on_every_level() -> None:
 
     assert measure(1, 0, mapping) == []
     assert len(asked) == len(set(asked)) == len(KNOWN) * len(CELLS) * 4
+
+
+# --- files, command --------------------------------------------------------------------------------------------------
+
+
+def test_the_page_is_that_of_the_table() -> None:
+    rows = files.read(DOCS / "power.csv")
+    assert len(rows) == len(KNOWN) * len(CELLS) * 4
+    assert files.markdown(rows) == (DOCS / "power.md").read_text()
+    text = (DOCS / "power.md").read_text()
+    assert text.count("| NO |") == sum(not one.kept for one in promises(rows))
+
+
+@pytest.mark.parametrize("item", [("h^2", "quick", 0.03), ("h^1.7", "default", 0.03)])
+def test_the_table_is_that_of_the_rule(item: tuple[str, str, float]) -> None:
+    """Counted again: after a change of the rule, verify power --out docs."""
+    (stored,) = [one for one in files.read(DOCS / "power.csv") if (one.sequence, one.levels, one.scatter) == item]
+    again = row(item, stored.draws, 0)
+    assert again == replace(stored, distance=again.distance)
+    assert stored.distance == pytest.approx(again.distance, abs=1e-9)
+
+
+@pytest.mark.slow
+def test_the_whole_table_is_that_of_the_rule(tmp_path: Path) -> None:
+    done = process("power", "--draws", "60", "--jobs", "2", "--out", str(tmp_path))
+    rows = {(one.sequence, one.levels, one.scatter): one for one in files.read(tmp_path / "power.csv")}
+    stored = {(one.sequence, one.levels, one.scatter): one for one in files.read(DOCS / "power.csv")}
+    assert rows.keys() == stored.keys()
+    for key, one in rows.items():
+        assert abs(one.passed / one.draws - stored[key].passed / stored[key].draws) < 0.25, key
+        assert one.sound == stored[key].sound
+    assert done.code == (0 if all(one.kept for one in promises(list(rows.values()))) else 1)
+
+
+def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    near = counted("20% of h in the square", 9, 9, 82)
+    counted_rows = [counted("h^2", 90, 1, 9), counted("h^1.7", 4, 50, 46, distance=20.0), near]
+    monkeypatch.setattr(command, "measured", lambda *_: counted_rows)
+    assert command.power(draws=100, seed=0, out=tmp_path, json_output=False) == 0
+    said = capsys.readouterr().out
+    assert "h^1.7 bad 4 / 50 / 46" in " ".join(said.split())
+    assert "quick   worst bad passes   h^1.7" in said
+    assert "quick, 3 % scatter: 20 % of h in the square passes 9.0 %, by any rule at least 82.6 %" in said
+    assert files.read(tmp_path / "power.csv") == counted_rows
+    assert (tmp_path / "power.png").stat().st_size > 10_000
+    monkeypatch.setattr(command, "measured", lambda *_: [counted("h^2", 50, 5, 45), counted("h", 0, 9, 0, distance=9)])
+    assert command.power(draws=100, seed=0, out=tmp_path, json_output=True) == 1
+    told = json.loads(capsys.readouterr().out)
+    assert [one["kept"] for one in told["promises"]] == [True, False, False]
+    assert told["promises"][1]["sentence"].startswith("quick: worst sound fails, h² with 3 % scatter, in 5.0 % of")
+
+
+@pytest.mark.parametrize("words", [("--draws", "0"), ("--jobs", "0"), ("--seed", "-1")])
+def test_misuse_is_one_line(
+    words: tuple[str, str], tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert words[0] in one_line(caller(monkeypatch, capsys, tmp_path)("power", *words, "--out", "new"))
+    assert not (tmp_path / "new").exists()

@@ -97,7 +97,7 @@ def square(fraction: float) -> Known:
         found: Array = 2 * a * b / (a**2 + b**2)
         return found
 
-    return Known(f"h^2, {fraction:.0%} of h in the square", error, lambda h: fraction, cross)
+    return Known(f"{fraction:.0%} of h in the square", error, lambda h: fraction, cross)
 
 
 def drift(start: float, end: float) -> Known:
