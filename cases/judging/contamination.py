@@ -13,13 +13,11 @@ from mpm_verify.cases.judging.records import Contamination
 from mpm_verify.cases.judging.scatter import EXACT, limit
 
 RESOLUTION = 1e-3  # of a fraction
-SURE = 0.99  # of a fraction that is shown; an exact fit is sure of anything
+SURE = 0.98  # of a fraction that is shown; an exact fit is sure of anything
 SHOWN = 0.10  # least fraction that adds in the square and is told
 
 
-def contamination(
-    h: Array, error: Array, order: float, confidence: float, noise: float | None = None
-) -> Contamination:
+def contamination(h: Array, error: Array, order: float, chance: float) -> Contamination:
     """Fit e = C h^p + D h^(p-1) + E0 and e^2 = C^2 h^2p + D^2 h^(2p-2) + E0^2, no term negative, weights 1/e.
 
     Parameters
@@ -29,10 +27,8 @@ def contamination(
     order
         The expected order p. For p <= 1 the lower-order term would not fall with h: it is the floor and has no column
         of its own.
-    confidence
-        Of the one-sided bounds.
-    noise
-        Relative scatter known from replicates: residuals of few levels may be smaller by luck. None where unknown.
+    chance
+        Largest relative deviation of an error by chance, at the confidence that the bounds are to have.
 
     Returns
     -------
@@ -43,10 +39,11 @@ def contamination(
     ----------
     Lawson & Hanson (1995), Solving Least Squares Problems, doi:10.1137/1.9781611971217 (non-negative least squares)
     """
-    fraction, most = _bounded(h, error, order, confidence, noise, 1)
-    _, squared = _bounded(h, error, order, confidence, noise, 2)
+    fraction, most = _bounded(h, error, order, chance, 1)
+    squares, squared = _bounded(h, error, order, chance, 2)
+    shown = _shown(h, error, order, float(1 - squares[0]))
     lower, floor = float(fraction[1:-1].sum()), float(fraction[-1])
-    return Contamination(lower, floor, most, float(np.sqrt(squared)), _shown(h, error, order))
+    return Contamination(lower, floor, most, float(np.sqrt(squared)), shown)
 
 
 def _terms(h: Array, order: float, power: int) -> list[Array]:
@@ -55,17 +52,12 @@ def _terms(h: Array, order: float, power: int) -> list[Array]:
     return [expected, (h / h[-1]) ** (power * (order - 1)), floor] if order > 1 else [expected, floor]
 
 
-def _bounded(
-    h: Array, error: Array, order: float, confidence: float, noise: float | None, power: int
-) -> tuple[Array, float]:
+def _bounded(h: Array, error: Array, order: float, chance: float, power: int) -> tuple[Array, float]:
     """Fractions of the terms in the finest error to this power, and the largest total that is not of `order`."""
     terms, error = _terms(h, order, power), error**power
     part, residual = _relative(terms, error)
     fraction = part / part.sum()
-    dof = len(h) - int(np.count_nonzero(part))
-    if dof == 0:  # as many terms as levels: the fit is exact and refutes nothing
-        return fraction, 1.0
-    most = np.hypot(residual, limit(residual / np.sqrt(dof), dof, confidence, noise, power))
+    most = np.hypot(residual, power * chance)
 
     def refuted(total: float) -> bool:
         mixed = [(1 - total) * terms[0] + total * other for other in terms[1:]]
@@ -74,7 +66,7 @@ def _bounded(
     return fraction, _bound(refuted, float(1 - fraction[0]))
 
 
-def _shown(h: Array, error: Array, order: float) -> float:
+def _shown(h: Array, error: Array, order: float, squares: float) -> float:
     """Fraction that adds in the square where the data refute that there are only SHOWN of it; 0 where they do not.
 
     What fits better as a sum is none: a leak of one sign has a square too.
@@ -82,13 +74,12 @@ def _shown(h: Array, error: Array, order: float) -> float:
     plain = _relative(_terms(h, order, 1), error)[1]
     terms, error = _terms(h, order, 2), error**2
     part, residual = _relative(terms, error)
-    other = float(1 - part[0] / part.sum())
     dof = len(h) - int(np.count_nonzero(part))
-    if other <= SHOWN**2 or dof == 0 or residual / 2 >= plain:
+    if squares <= SHOWN**2 or dof == 0 or residual / 2 >= plain:
         return 0.0
     most = np.hypot(residual, limit(residual / np.sqrt(dof), dof, SURE, 0.0))
     allowed = [terms[0], *((1 - SHOWN**2) * terms[0] + SHOWN**2 * term for term in terms[1:])]
-    return float(np.sqrt(other)) if _relative(allowed, error)[1] > most + EXACT else 0.0
+    return float(np.sqrt(squares)) if _relative(allowed, error)[1] > most + EXACT else 0.0
 
 
 def _relative(terms: Sequence[Array], error: Array) -> tuple[Array, float]:

@@ -13,7 +13,7 @@ from math import log
 import numpy as np
 from numpy.typing import NDArray
 
-from mpm_verify.cases.judging.scatter import EXACT, ROUGH, USUAL, about, limit
+from mpm_verify.cases.judging.scatter import EXACT, USUAL, about, limit, unusual
 
 Array = NDArray[np.float64]
 
@@ -87,24 +87,18 @@ class Slope:
     error
         Its standard error.
     dof
-        Degrees of freedom behind that error.
-    usual
-        Its standard error were the scatter the usual one, or what residuals show if that is more; None where
-        replicates tell the scatter, or residuals refute the usual one.
+        Degrees of freedom behind that error; infinite where the scatter is taken to be the usual one.
     """
 
     value: float
     error: float
     dof: float
-    usual: float | None = None
 
     def interval(self, confidence: float) -> tuple[float, float]:
-        """Two-sided interval at this confidence, such as 0.95: the narrower of Student's and the usual one."""
-        from scipy.special import ndtri, stdtrit
+        """Two-sided Student interval at this confidence, such as 0.95."""
+        from scipy.special import stdtrit  # the quantile of Student's t
 
         half = float(stdtrit(self.dof, (1 + confidence) / 2)) * self.error
-        if self.usual is not None:
-            half = min(half, float(ndtri((1 + confidence) / 2)) * self.usual)
         return self.value - half, self.value + half
 
     def doubt(self, low: float, high: float) -> float:
@@ -114,11 +108,10 @@ class Slope:
         ----------
         Schuirmann (1987), J. Pharmacokinet. Biopharm. 15, 657, doi:10.1007/BF01068419
         """
-        from scipy.special import ndtr, stdtr
+        from scipy.special import stdtr
 
         margin = min(self.value - low, high - self.value)
-        found = 2 * float(stdtr(self.dof, -margin / max(self.error, EXACT)))
-        return min(1.0, found if self.usual is None else min(found, 2 * float(ndtr(-margin / self.usual))))
+        return min(1.0, 2 * float(stdtr(self.dof, -margin / max(self.error, EXACT))))
 
 
 def fit_slope(h: Array, errors: Sequence[Array]) -> Slope:
@@ -135,7 +128,7 @@ def fit_slope(h: Array, errors: Sequence[Array]) -> Slope:
     -------
     Slope
         Its standard error comes from a bootstrap over replicates (Efron) with Satterthwaite's degrees of freedom if
-        every level has some, else from the residuals.
+        every level has some, else from the residuals and the usual scatter (scatter.py).
 
     References
     ----------
@@ -151,8 +144,9 @@ def fit_slope(h: Array, errors: Sequence[Array]) -> Slope:
         dof = float((weight @ weight) ** 2 / (weight**4 / spread).sum())  # Satterthwaite (1946)
         return Slope(value, _bootstrap(weight, [np.log(e) for e in errors]), dof)
     scatter, wide = about(x, y, 1), float(np.sqrt(x @ x))
-    usual = max(scatter, USUAL) / wide if scatter <= ROUGH else None
-    return Slope(value, scatter / wide, float(len(h) - 2), usual)
+    if unusual(scatter, len(h) - 2):
+        return Slope(value, scatter / wide, float(len(h) - 2))
+    return Slope(value, max(scatter, USUAL) / wide, float("inf"))
 
 
 def _bootstrap(weight: Array, logs: Sequence[Array]) -> float:
@@ -223,14 +217,16 @@ class Fit:
         """Whether the errors lie neither about a power of h nor about a smooth curve: one can only ask for more."""
         x, y = np.log(self.h), np.log(self.error)
         rough, bent = about(x, y, 1), about(x, y, 2) if len(x) > FEWEST else np.inf
-        return self.noise is None and rough > ROUGH and bent > BENT
+        return self.noise is None and unusual(rough, len(x) - 2) and rough > USUAL and bent > BENT
 
     @cached_property
     def pair(self) -> float:
         """One standard deviation of the last local order, as far as scatter goes."""
-        residual = about(np.log(self.h), np.log(self.error), 1)
-        most = limit(residual, len(self.h) - 2, ONE_SIGMA, self.noise)
-        return most * float(np.sqrt(2) / np.log(self.h[-2] / self.h[-1]))
+        return self.chance(ONE_SIGMA) * float(np.sqrt(2) / np.log(self.h[-2] / self.h[-1]))
+
+    def chance(self, confidence: float) -> float:
+        """Largest relative deviation of an error by chance, one-sided."""
+        return limit(about(np.log(self.h), np.log(self.error), 1), len(self.h) - 2, confidence, self.noise)
 
     def rises_to(self, low: float) -> bool:
         """Whether the local orders rise, and reach `low` before too many levels at that trend: not a defect yet."""
