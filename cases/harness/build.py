@@ -249,7 +249,7 @@ def named(asked: Asked) -> str:
     usual = {item.name: [item.default] for item in fields(case.Run)} | {k: list(v) for k, v in case.axes.items()}
     quick = {key: list(case.quick[key]) for key in FIRST if asked.quick and key in case.quick}
     for key in (key for key in FIRST if key in usual):
-        taken = quick.get(key, usual[key])
+        taken: list[Any] = quick.get(key) or usual[key]
         chosen = values.pop(key, taken)
         words += map(str, chosen) if chosen != taken or (key == "method" and case.quantities) else ()
     for item in fields(case.Run):

@@ -143,7 +143,7 @@ class _Spoilable:
 
     @property
     def expectation(self) -> Expectation:
-        """What is registered: plans that pass have it."""
+        """Expectation: plans that pass have one."""
         assert self.plan.expectation is not None
         return self.plan.expectation
 

@@ -27,7 +27,7 @@ def short(record: Record, solution: str) -> str:
 
 
 def unseen(record: Record) -> str:
-    """Text on what no solution of the study can see, where one may see what another does not; empty without solutions."""
+    """Text on what no solution of the study can see: one may see what another does not."""
     audits = [blind_spots(record, solution) for solution in record.solutions]
     codes = [{spot.code for spot in spots if spot.blind} for spots in audits]
     common = set.intersection(*codes) if codes else set()

@@ -19,7 +19,7 @@ NAMES = {
 
 
 def name(control: Control) -> str:
-    """What was spoilt."""
+    """Phrase on what was spoilt."""
     return NAMES[control.code]
 
 
