@@ -46,7 +46,7 @@ def test_levels_are_those_of_the_studies() -> None:
         ("h^2 + 0.005 h", "default", 0.005 / (0.005 + 1 / 128)),
         ("h^2 + 0.005 h", "quick", 0.005 / (0.005 + 1 / 32)),
         ("h^2 + 1e-5", "default", 1e-5 / (1e-5 + 2**-14)),
-        ("40% of h in the square", "six levels", 0.4),
+        ("40% of h in the square", "six levels", 1 - 0.84**0.5),  # 8 %
     ],
 )
 def test_what_is_not_of_second_order(name: str, levels: str, other: float) -> None:

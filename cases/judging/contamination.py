@@ -1,7 +1,7 @@
 """Contamination: what of the finest error is not of the expected order, where it adds and where its square adds.
 
 A leak or a floor of one sign adds to the error. One that is as often positive as negative among the particles adds in
-the square, since an error is a root mean square: 40 % of it raise the error by 8 % only. So e and its square are fitted.
+the square, since an error is a root mean square: 40 % of it raise the error by 8 % only. So e and e^2 are fitted.
 """
 
 from collections.abc import Callable, Sequence

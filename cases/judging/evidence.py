@@ -2,7 +2,8 @@
 
 from math import log
 
-from mpm_verify.cases.judging.quantity import LEVELS, Quantity
+from mpm_verify.cases.judging.fit import LEVELS
+from mpm_verify.cases.judging.quantity import Quantity
 from mpm_verify.cases.judging.records import Reason, ReasonCode, Recorded
 from mpm_verify.solver.failure import FailureKind
 

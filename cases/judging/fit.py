@@ -21,7 +21,7 @@ STEADY = 0.15  # largest change of the local order from one level to the next in
 SHRINK = 0.6  # or each change at most this times the one before it
 AHEAD = 2  # times the levels of the window; at 1, h^2 / (1 + 128 h) with 3 % scatter fails in 22 %, not in 3 %
 RESAMPLES, SEED = 2000, 20240229  # the seed is fixed: the same errors give the same verdict
-FEWEST = 4  # levels of a window that can pass
+LEVELS = 4  # fewer cannot show that the order has settled
 ONE_SIGMA = 0.84  # confidence of one standard error, one-sided
 BENT = 0.02  # scatter about a parabola that leaves a window to be judged, whatever it is about a line
 
@@ -216,7 +216,7 @@ class Fit:
     def scatters(self) -> bool:
         """Whether the errors lie neither about a power of h nor about a smooth curve: one can only ask for more."""
         x, y = np.log(self.h), np.log(self.error)
-        rough, bent = about(x, y, 1), about(x, y, 2) if len(x) > FEWEST else np.inf
+        rough, bent = about(x, y, 1), about(x, y, 2) if len(x) > LEVELS else np.inf
         return self.noise is None and unusual(rough, len(x) - 2) and rough > USUAL and bent > BENT
 
     @cached_property

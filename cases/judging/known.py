@@ -6,6 +6,7 @@ error is of another, and bad otherwise: so a floor of 1e-5 is sound down to h = 
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -81,9 +82,10 @@ def floor(e: float) -> Known:
 def square(fraction: float) -> Known:
     """Second order with a first-order part that has this fraction of the finest error, and a random sign.
 
-    Sums of squares of such errors add, but for the mean of the signs of the particles, which is drawn.
+    Sums of squares of such errors add, but for the mean of the signs of the particles, which is drawn. So 40 % raise
+    the finest error by 8 %: that, not the fraction, is what is of another order in it.
     """
-    second = np.sqrt(1 - fraction**2)
+    second = sqrt(1 - fraction**2)
 
     def parts(h: Array) -> tuple[Array, Array]:
         return second * h**2, fraction * h * h[-1]
@@ -97,7 +99,7 @@ def square(fraction: float) -> Known:
         found: Array = 2 * a * b / (a**2 + b**2)
         return found
 
-    return Known(f"{fraction:.0%} of h in the square", error, lambda h: fraction, cross)
+    return Known(f"{fraction:.0%} of h in the square", error, lambda h: 1 - second, cross)
 
 
 def drift(start: float, end: float) -> Known:

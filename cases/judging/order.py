@@ -14,10 +14,10 @@ from functools import cached_property
 
 import numpy as np
 
-from mpm_verify.cases.judging.evidence import CLEAR, carried, evidence, tail
 from mpm_verify.cases.judging.contamination import contamination
-from mpm_verify.cases.judging.fit import FEWEST, Fit
-from mpm_verify.cases.judging.quantity import LEVELS, Quantity
+from mpm_verify.cases.judging.evidence import CLEAR, carried, evidence, tail
+from mpm_verify.cases.judging.fit import LEVELS, Fit
+from mpm_verify.cases.judging.quantity import Quantity
 from mpm_verify.cases.judging.records import (
     Action,
     Contamination,
@@ -35,7 +35,7 @@ __all__ = ["Expectation", "Level", "Outcome", "Quantity", "Verdict", "judge", "j
 
 COUPLED = 0.10  # relative change of the finest error when dt is halved
 NO_PASS, DEFECT = 0.10, 0.50  # fractions of the finest error that are not of the expected order
-MOST = 0.15  # of the finest error, refuted with SURE: a leak of 14 % then passes in 5 % of quick studies with 3 % scatter
+MOST = 0.15  # of the finest error, refuted: a leak of 14 % passes in 5 % of quick studies with 3 % scatter
 SURE, SHORT = 0.97, 0.985  # one-sided; on the shortest window more, as it is looked at beside longer ones
 MAGNITUDE = 0.10  # relative distance from a recorded error that was carried over to other cells
 GROWTH = 2.0  # a flat sequence with 15 % scatter grows by 1.5 from its best level in 9 % of draws, by 2 in 0.2 %
@@ -132,7 +132,7 @@ class Window:
     @cached_property
     def mixed(self) -> Contamination:
         """Contamination of its finest error."""
-        sure = SHORT if len(self.fit.h) == FEWEST else SURE
+        sure = SHORT if len(self.fit.h) == LEVELS else SURE
         order = self.q.expectation.order
         assert order is not None
         return contamination(self.fit.h, self.fit.error, order, self.fit.chance(sure))
@@ -144,8 +144,9 @@ class Window:
 
     @property
     def passes(self) -> bool:
-        """Whether all of its findings are as expected, and it does not scatter."""
-        return not self.fit.scatters and all(outcome is PASS for outcome, _ in self.findings)
+        """Whether its errors fall without much scatter, and all of its findings are as expected."""
+        falls = bool(np.all(np.diff(self.fit.error) < 0))
+        return falls and not self.fit.scatters and all(outcome is PASS for outcome, _ in self.findings)
 
     def first(self, outcome: Outcome) -> Finding | None:
         """First finding with this outcome."""
@@ -154,8 +155,8 @@ class Window:
 
 def _windows(q: Quantity, confidence: float) -> list[Window]:
     """Windows that can pass, the longest first."""
-    counts = range(len(q.fit.h), FEWEST - 1, -1)
-    return [Window(q, q.fit.finest(m), 1 - (1 - confidence) / 2 ** (m - FEWEST + 1)) for m in counts]
+    counts = range(len(q.fit.h), LEVELS - 1, -1)
+    return [Window(q, q.fit.finest(m), 1 - (1 - confidence) / 2 ** (m - LEVELS + 1)) for m in counts]
 
 
 def _doubt(q: Quantity) -> float:
@@ -219,7 +220,12 @@ def _gate(q: Quantity) -> Reason | None:
     change = q.dt_halved / float(fit.replicates[-1][0]) - 1
     if abs(change) >= COUPLED:
         return Reason(ReasonCode.TIME_STEP_COUPLED, {"change": change}, wanted=q.wanted(Action.HALVE_ALL, finest))
-    rises = fit.h[1:][np.diff(fit.error) >= 0]
+    return None
+
+
+def _rises(q: Quantity) -> Reason | None:
+    """Reason that the error rises somewhere; None where it falls."""
+    rises = q.fit.h[1:][np.diff(q.fit.error) >= 0]
     return Reason(ReasonCode.ERROR_RISES, {"h": float(rises[0])}, wanted=q.finer) if len(rises) else None
 
 
@@ -231,6 +237,8 @@ def _convergence(q: Quantity, settled: Window, confidence: float) -> tuple[Outco
         for _, reason in passed.findings:
             numbers |= reason.numbers
         return PASS, Reason(ReasonCode.AS_EXPECTED, numbers), passed
+    if rises := _rises(q):
+        return INCONCLUSIVE, rises, settled
     if q.fit.settled and (failed := settled.first(FAIL)):
         return *failed, settled
     count = len(settled.fit.h)
@@ -265,10 +273,10 @@ def _purity(w: Window) -> Finding:
     parts: Numbers = {"lower": mixed.lower, "floor": mixed.floor, "most": mixed.most, "squared": mixed.squared}
     if mixed.total > DEFECT and not w.fit.rises_to(w.q.band[0]):
         return FAIL, Reason(ReasonCode.CONTAMINATED, parts)
-    if mixed.total > NO_PASS or mixed.most > MOST:
-        return INCONCLUSIVE, Reason(ReasonCode.CONTAMINATION_OPEN, {"limit": NO_PASS, **parts}, wanted=w.q.finer)
     if mixed.shown:
         return INCONCLUSIVE, Reason(ReasonCode.ADDS_IN_SQUARE, {"shown": mixed.shown}, wanted=w.q.finer)
+    if mixed.total > NO_PASS or mixed.most > MOST:
+        return INCONCLUSIVE, Reason(ReasonCode.CONTAMINATION_OPEN, {"limit": NO_PASS, **parts}, wanted=w.q.finer)
     return PASS, Reason(ReasonCode.AS_EXPECTED, {"most": mixed.most, "squared": mixed.squared})
 
 
