@@ -131,6 +131,7 @@ def test_no_rule_tells_apart_what_is_near() -> None:
     assert counted("h^1", 0, 1, 0, distance=6.0).least(clean) < 1e-4
     assert counted("h^1", 0, 1, 0, distance=math.inf).least(clean) == 0
     assert counted("h^1", 0, 1, 0).least(counted("h^2", 0, 0, 9)) == 0
+    assert counted("h^2", 5, 5, 0, distance=1.0).least(counted("h^1.5", 392, 9608, 0)) == pytest.approx(0.764, abs=3e-3)
 
 
 def test_the_distance_is_that_of_the_logarithms() -> None:

@@ -41,12 +41,15 @@ class Known:
         Fraction of the finest error that is not of second order.
     cross
         Twice the product (n,) of the two parts of the error over its square, where their signs are random.
+    like
+        Name of the sequence with another right verdict that it is most like.
     """
 
     name: str
     error: Callable[[Array], Array]
     other: Callable[[Array], float] = _nothing
     cross: Callable[[Array], Array] | None = None
+    like: str = "h^2"
 
     def sound(self, h: Array) -> bool:
         """Whether PASS is the right verdict, not FAIL, on these levels."""
@@ -119,7 +122,7 @@ KNOWN = (
     Known("h^2 (1 - 2 h)", lambda h: h**2 * (1 - 2 * h)),
     Known("h^2 (1 + 6 h)", lambda h: h**2 * (1 + 6 * h)),
     Known("h^2 + 40 h^4", lambda h: h**2 + 40 * h**4),
-    Known("h^2 / (1 + 16 h)", lambda h: h**2 / (1 + 16 * h)),
+    Known("h^2 / (1 + 16 h)", lambda h: h**2 / (1 + 16 * h), like="h^1.5"),
     floor(1e-6),
     floor(1e-5),
     leak(0.005),

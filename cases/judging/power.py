@@ -44,8 +44,8 @@ class Row:
         Numbers of draws: PASS, FAIL, INCONCLUSIVE.
     reason
         Code of the commonest reason of those that did not pass.
-    distance
-        Of the sequence from second order, in standard deviations of the scatter.
+    distance, like
+        Distance from the sequence that it is most like, in standard deviations of the scatter, and its name.
     """
 
     sequence: str
@@ -58,6 +58,7 @@ class Row:
     left: int
     reason: str
     distance: float
+    like: str = CLEAN.name
 
     @property
     def draws(self) -> int:
@@ -74,8 +75,10 @@ class Row:
         """Number of right verdicts; the others are INCONCLUSIVE."""
         return self.passed if self.sound else self.failed
 
-    def least(self, clean: "Row") -> float:
-        """Least rate of PASS of any rule that passes `clean`, of the same levels and scatter, as often as this one.
+    def least(self, other: "Row") -> float:
+        """Least rate of wrong verdicts of any rule that is right on `other` as often as this one.
+
+        `other` is the sequence that it is most like, on the same levels and with the same scatter.
 
         References
         ----------
@@ -83,8 +86,8 @@ class Row:
         """
         from scipy.special import ndtr, ndtri
 
-        power = interval(clean.passed, clean.draws)[0]
-        return float(ndtr(ndtri(power) - self.distance)) if power > 0 else 0.0
+        power = interval(other.right, other.draws)[0]
+        return float(ndtr(ndtri(power) - self.distance)) if power > 0 and self.sound != other.sound else 0.0
 
 
 def interval(count: int, draws: int) -> tuple[float, float]:
@@ -108,7 +111,7 @@ def judged(h: np.ndarray, error: np.ndarray) -> Verdict:
 def row(item: Item, draws: int, seed: int) -> Row:
     """Count the verdicts on one sequence; a draw hangs on the seed, the names and its number alone."""
     name, levels, scatter = item
-    known = next(one for one in KNOWN if one.name == name)
+    known = named(name)
     h = 1 / np.array(CELLS[levels], dtype=np.float64)
     rng = np.random.default_rng([seed, crc32(f"{known.name}, {levels}, {scatter:g}".encode())])
     found = [judged(h, known.drawn(h, scatter, rng)) for _ in range(draws if scatter or known.cross else 1)]
@@ -126,12 +129,18 @@ def row(item: Item, draws: int, seed: int) -> Row:
         repeat * count[Outcome.INCONCLUSIVE],
         reasons.most_common(1)[0][0] if reasons else "",
         _distance(h, known, scatter),
+        known.like,
     )
 
 
+def named(name: str) -> Known:
+    """Sequence of that name."""
+    return next(one for one in KNOWN if one.name == name)
+
+
 def _distance(h: np.ndarray, known: Known, scatter: float) -> float:
-    """Distance from C h^2 with the nearest C, in standard deviations."""
-    ratio = np.log(known.error(h) / h**2)
+    """Distance from a multiple of the sequence that it is most like, the nearest one, in standard deviations."""
+    ratio = np.log(known.error(h) / named(known.like).error(h))
     away = float(np.linalg.norm(ratio - ratio.mean()))
     return away / scatter if scatter else float("inf") if away > 1e-9 else 0.0
 
@@ -184,16 +193,23 @@ class Promise:
 
 
 def promises(rows: Sequence[Row]) -> list[Promise]:
-    """Promises on each of the levels; a bad sequence that no rule can tell from a clean one is not held against it."""
-    found = []
+    """Promises on each of the levels; what no rule can tell is not held against it."""
+    found, least = [], floors(rows)
     for levels in dict.fromkeys(one.levels for one in rows):
         here = [one for one in rows if one.levels == levels]
-        clean = {one.scatter: one for one in here if one.sequence == CLEAN.name}
-        bad = max((one for one in here if not one.sound and one.least(clean[one.scatter]) <= SAFE), key=_wrong)
-        sound = max((one for one in here if one.sound), key=_wrong)
+        clean = next(one for one in here if one.sequence == CLEAN.name and one.scatter == SCATTER)
+        bad = max((one for one in here if not one.sound and least[one] <= SAFE), key=_wrong)
+        sound = max((one for one in here if one.sound and least[one] <= SOUND), key=_wrong)
         found += [Promise("bad_passes", bad, bad.passed, SAFE), Promise("sound_fails", sound, sound.failed, SOUND)]
-        found.append(Promise("clean_passes", clean[SCATTER], clean[SCATTER].passed, POWER[levels]))
+        found.append(Promise("clean_passes", clean, clean.passed, POWER[levels]))
     return found
+
+
+def floors(rows: Sequence[Row]) -> dict[Row, float]:
+    """Least rate of wrong verdicts of any rule, for each row; 0 where the row that it is like was not counted."""
+    known = {(one.sequence, one.levels, one.scatter): one for one in rows}
+    like = {one: known.get((one.like, one.levels, one.scatter)) for one in rows}
+    return {one: one.least(other) if other else 0.0 for one, other in like.items()}
 
 
 def _wrong(one: Row) -> float:

@@ -4,7 +4,7 @@ import re
 from collections.abc import Sequence
 
 from mpm_verify.cases.judging.known import CELLS
-from mpm_verify.cases.judging.power import CLEAN, SAFE, Promise, Row, interval
+from mpm_verify.cases.judging.power import SAFE, SOUND, Promise, Row, floors, interval
 from mpm_verify.reports import words
 
 RAISED = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -55,14 +55,12 @@ def sentence(one: Promise) -> str:
 
 
 def hidden(rows: Sequence[Row]) -> list[str]:
-    """Sentences on bad sequences that no rule can tell from clean second order, which it passes as often."""
-    clean = {(one.levels, one.scatter): one for one in rows if one.sequence == CLEAN.name}
+    """Sentences on sequences that no rule can tell from another, on which it is right as often."""
     found = []
-    for one in rows:
-        least = one.least(clean[one.levels, one.scatter])
-        if not one.sound and least > SAFE:
-            passes = f"{name(one.sequence)} passes {words.percent(one.passed / one.draws)}"
+    for one, least in floors(rows).items():
+        if least > (SOUND if one.sound else SAFE):
+            what = f"{name(one.sequence)} {'fails' if one.sound else 'passes'} {words.percent(one.wrong / one.draws)}"
             found.append(
-                f"{one.levels}, {scatter(one.scatter)} scatter: {passes}, by any rule at least {words.percent(least)}"
+                f"{one.levels}, {scatter(one.scatter)} scatter: {what}, by any rule at least {words.percent(least)}"
             )
     return found
