@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
 from math import isfinite
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, TypeAlias
 
 from mpm_verify.solver.failure import RunFailed
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 EPS = 2.0**-52
 MARGIN = 100.0
-Pairs = "list[tuple[ArrayLike, ArrayLike, float]]"
+Pairs: TypeAlias = "list[tuple[ArrayLike, ArrayLike, float]]"
 FAILED = 1e99  # residual of what ended, or is not a number
 
 
