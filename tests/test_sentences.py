@@ -89,6 +89,7 @@ EXAMPLES = {
     ReasonCode.ORDER_ABOVE: Example(clean(2.4)),
     ReasonCode.ORDER_UNDECIDED: Example((2.590e-3, 7.502e-4, 1.706e-4, 4.275e-5)),
     ReasonCode.CONTAMINATION_OPEN: Example(clean(1.9)),
+    ReasonCode.ADDS_IN_SQUARE: Example(tuple(np.hypot(0.98**0.5 * H**2, 0.02**0.5 * H[-1] * H).tolist())),
     ReasonCode.MAGNITUDE_CARRIED: Example(clean(), known(1 / 256, 2)),
     ReasonCode.NEITHER: Example((1e-3, 1.1e-3, 0.9e-3, 1e-3), DIVERGES),
 }

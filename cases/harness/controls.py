@@ -101,7 +101,7 @@ def _tried(
     ]
     names = tuple(dict.fromkeys([*held, *((plan.quantity, plan.norm) for plan in study.plans)]))
     altered: Altered = (replace(study, plans=tuple(plans)), results)
-    for plan in kept:
+    for plan in kept if held else []:  # where every run failed nothing says which errors a run has
         if spoilt := spoil(_Spoilable(plan, runs[plan.head], *altered, names)):
             altered = spoilt
             tried.append(plan)
