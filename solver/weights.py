@@ -55,6 +55,8 @@ class Basis:
     domain_motion
         Motion of the domains, by which exact tests know them: ``fixed``, ``stretched`` by the diagonal of F alone, or
         ``deformed``, with the area J V0; empty of points, and of a basis that does not say.
+    positive
+        Whether shape values inside the grid are not negative.
     gradients_jump
         Whether gradients of weights jump where a particle crosses a cell.
     has_limit
@@ -68,6 +70,7 @@ class Basis:
     fill: ClassVar[Callable[..., bool]]
     domain_size: ClassVar[int] = 0
     domain_motion: ClassVar[str] = ""
+    positive: ClassVar[bool] = True
     gradients_jump: ClassVar[bool] = False
     has_limit: ClassVar[bool] = False
     limit = inf

@@ -6,7 +6,7 @@ and rotation and det F is not 1, and rows of random numbers come from one seed.
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from math import cos, sin
 from typing import Any
 
@@ -15,11 +15,13 @@ import numpy as np
 from mpm_verify.solver.boundary import Kind, Walls, box, moving
 from mpm_verify.solver.layout import Layout, rectangle
 from mpm_verify.solver.plugins import MATERIALS, METHODS, TRANSFERS, available, create
-from mpm_verify.solver.state import Floats, Grid, Particles
+from mpm_verify.solver.state import Floats, Grid, Ints, Particles
 from mpm_verify.solver.step import Model, Scheme
 from mpm_verify.solver.stress_update import Stress
 
-DX, CELLS, MARGIN_CELLS = 0.3, np.array([10, 9]), 3  # side of a cell, cells of the grid, and those around the body
+DX = 0.3  # side of a cell
+CELLS, AROUND = np.array([10, 9]), 3  # cells of a grid, and of its rim around the body
+FILLED = np.array([5, 4])  # cells of a grid that the body fills
 PPC, OFFSET = 4, (0.2, -0.15)
 COURANT = 0.3
 SEED = 20221
@@ -28,14 +30,15 @@ STRAINED = np.array([[1.06, 0.17], [-0.08, 0.97]])  # F at the start: sheared an
 MIRROR = np.array([[-1.0, 0.0], [0.0, 1.0]])
 QUARTER = np.array([[0.0, -1.0], [1.0, 0.0]])
 STRESS_UPDATES: tuple[Stress, ...] = ("usl", "musl", "usf")
-TRANSFER_NAMES = ("flip", "flip:fraction=0.9", "pic", "apic", "fmpm")
+BLEND = "flip:fraction=0.9"  # of FLIP and PIC
+FLIP = {"flip": 1.0, BLEND: 0.9, "pic": 0.0, "apic": 0.0, "fmpm": 0.0}  # fraction of FLIP by transfer
 Sides = Kind | tuple[Kind, Kind, Kind, Kind]
 Rule = Callable[[Floats, float, float], tuple[Any, Floats, Floats]]
 
 
 @dataclass(frozen=True)
 class Subject:
-    """What is tested: a method and a material by their specifications."""
+    """Method and material that are tested, by their specifications."""
 
     method: str
     material_name: str
@@ -49,6 +52,10 @@ class Subject:
     def material(self) -> Any:
         """Constitutive model."""
         return create(MATERIALS, self.material_name)
+
+    def check(self) -> None:
+        """Raise ValueError with one line for a method or material that is not there."""
+        _ = self.basis, self.material
 
     @cached_property
     def speed(self) -> float:
@@ -79,6 +86,11 @@ class Variant:
     stress: Stress = "usl"
 
     @property
+    def flip(self) -> float:
+        """Fraction of FLIP, as the name says; of a transfer that does not ship, as it says itself."""
+        return FLIP.get(self.transfer, self.scheme.transfer.flip_fraction)
+
+    @cached_property
     def scheme(self) -> Scheme:
         """Choices of the step."""
         return Scheme(create(TRANSFERS, self.transfer), self.stress)
@@ -87,21 +99,17 @@ class Variant:
         return f"{self.transfer} {self.stress}"
 
 
-def variants() -> list[Variant]:
-    """Variants of a step: every transfer with every stress update, and a blend of FLIP and PIC."""
-    more = [name for name in available(TRANSFERS) if name not in TRANSFER_NAMES]
-    return [Variant(transfer, stress) for transfer in (*TRANSFER_NAMES, *more) for stress in STRESS_UPDATES]
+@cache
+def variants() -> tuple[Variant, ...]:
+    """Variants of a step: every transfer with every stress update."""
+    return tuple(Variant(transfer, stress) for transfer in available(TRANSFERS) for stress in STRESS_UPDATES)
 
 
-def grid(turned: bool = False) -> Grid:
-    """Grid of a few cells, whose sides differ; with its sides swapped where it is `turned`."""
-    return Grid(DX, np.zeros(2), DX * (CELLS[::-1] if turned else CELLS))
-
-
+@cache
 def layout(filled: bool = False) -> Layout:
-    """Layout of a rectangle away from the sides of the grid, or of one that fills it."""
-    around = 0 if filled else MARGIN_CELLS
-    return rectangle(DX * around * np.ones(2), DX * (CELLS - around), DX, PPC, OFFSET)
+    """Layout of a rectangle away from the sides of its grid, or of one that fills it."""
+    lower, upper = (np.zeros(2), DX * FILLED) if filled else (DX * AROUND * np.ones(2), DX * (CELLS - AROUND))
+    return rectangle(lower, upper, DX, PPC, OFFSET)
 
 
 def deformed(F: Floats) -> Callable[[Floats], Floats]:
@@ -110,8 +118,9 @@ def deformed(F: Floats) -> Callable[[Floats], Floats]:
     return lambda X: middle + (X - middle) @ F.T
 
 
+@cache
 def random(*shape: int, seed: int = SEED) -> Floats:
-    """Numbers between -1 and 1, the same at each call."""
+    """Numbers between -1 and 1, the same at each call; not to be written."""
     numbers: Floats = np.random.default_rng(seed).uniform(-1.0, 1.0, shape)
     return numbers
 
@@ -133,11 +142,17 @@ def shaken(subject: Subject, p: Particles, strain: float = 0.03) -> Particles:
     return p
 
 
+def grid(cells: Ints = CELLS) -> Grid:
+    """Grid of so many cells."""
+    upper: Floats = DX * cells.astype(np.float64)
+    return Grid(DX, np.zeros(2), upper)
+
+
 def modelled(
-    subject: Subject, p: Particles, variant: Variant, walls: Walls | Sides = FREE, turned: bool = False, **more: Any
+    subject: Subject, p: Particles, variant: Variant, walls: Walls | Sides = FREE, cells: Ints = CELLS, **more: Any
 ) -> Model:
-    """Model of particles on the grid, its walls by their kind or as they are; `more` goes to Model."""
-    g = grid(turned)
+    """Model of particles on a grid of so many cells, its walls by their kind or as they are; `more` goes to Model."""
+    g = grid(cells)
     held = walls if isinstance(walls, Walls) else box(g, walls)
     return Model(g, p, subject.basis, subject.material, held, subject.dt, variant.scheme, **more)
 

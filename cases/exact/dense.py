@@ -23,7 +23,7 @@ class Weights:
 
 @dataclass(frozen=True)
 class State:
-    """What a step changes: x, v (P,2), F (P,2,2), sigma (P,4), and B (P,2,2), the affine velocity of APIC."""
+    """State that a step changes: x, v (P,2), F (P,2,2), sigma (P,4), and B (P,2,2), the affine velocity of APIC."""
 
     x: Floats
     v: Floats
@@ -37,25 +37,26 @@ def weights(model: Model, x: Floats, F: Floats) -> Weights:
     g, p, basis = model.grid, model.particles, model.basis
     P, K, n = len(x), basis.support, g.nx * g.ny
     table, node = np.empty(3 * K * BLOCK), np.empty(K * BLOCK, np.int64)
-    sums = np.zeros((3, P, n))
+    sums = np.zeros((3, P * n))
     for lo in range(0, P, BLOCK):
         hi = min(lo + BLOCK, P)
         basis.fill(
             x[lo:hi].ravel(), F[lo:hi].ravel(), p.domain[lo:hi].ravel(), *g.origin, 1 / g.dx, g.nx, g.ny,
             0.0, g.nx - 1.0, 0.0, g.ny - 1.0, table, node,
         )  # fmt: skip
-        rows = np.broadcast_to(np.arange(lo, hi), (K, hi - lo))
-        nodes = node.reshape(K, BLOCK)[:, : hi - lo]
+        at = (n * np.arange(lo, hi) + node.reshape(K, BLOCK)[:, : hi - lo]).ravel()
         for total, part in zip(sums, table.reshape(3, K, BLOCK), strict=True):
-            np.add.at(total, (rows, nodes), part[:, : hi - lo])
-    return Weights(sums[0], np.moveaxis(sums[1:], 0, -1))
+            total += np.bincount(at, part[:, : hi - lo].ravel(), P * n)
+    N, gx, gy = sums.reshape(3, P, n)
+    return Weights(N, np.stack([gx, gy], axis=-1))
 
 
 @dataclass(frozen=True)
 class Dense:
-    """Formulas of a step of one model, from the state that it is in."""
+    """Formulas of a step of one model, from the state that it is in, with a fraction `flip` of FLIP."""
 
     model: Model
+    flip: float
 
     @property
     def state(self) -> State:
@@ -73,11 +74,12 @@ class Dense:
         """Distances (P,n,2) of the nodes from the mean position of each particle, and their second moment D (P,2,2)."""
         nodes = self.model.grid.nodes
         r = nodes[None] - (w.N @ nodes)[:, None]
-        return r, np.einsum("pn,pna,pnb->pab", w.N, r, r)
+        return r, (w.N[:, :, None] * r).transpose(0, 2, 1) @ r
 
     def mass(self, w: Weights) -> Floats:
         """Mass of the nodes (n,)."""
-        return w.N.T @ self.model.particles.m
+        mass: Floats = w.N.T @ self.model.particles.m
+        return mass
 
     def momentum(self, w: Weights, v: Floats, B: Floats) -> Floats:
         """Momentum of the nodes (n,2)."""
@@ -85,7 +87,8 @@ class Dense:
         total: Floats = w.N.T @ (m[:, None] * v)
         if self.affine:
             r, D = self.around(w)
-            total += np.einsum("p,pn,pab,pnb->na", m, w.N, B @ np.linalg.inv(D), r)
+            around = r @ (B @ np.linalg.inv(D)).transpose(0, 2, 1)
+            total += ((m[:, None] * w.N)[:, :, None] * around).sum(axis=0)
         return total
 
     def force(self, w: Weights, F: Floats, sigma: Floats, b: Floats) -> Floats:
@@ -93,12 +96,14 @@ class Dense:
         p = self.model.particles
         V = p.V0 * np.linalg.det(F)
         plane = sigma[:, [0, 3, 3, 1]].reshape(-1, 2, 2)
-        return w.N.T @ (p.m[:, None] * b) - np.einsum("p,pab,pnb->na", V, plane, w.dN)
+        total: Floats = w.N.T @ (p.m[:, None] * b) - (w.dN @ (V[:, None, None] * plane)).sum(axis=0)
+        return total
 
     def over_mass(self, w: Weights, values: Floats) -> Floats:
         """Values over mass (n,2), zero at nodes of no mass."""
         mass = self.mass(w)[:, None]
-        return np.divide(values, mass, out=np.zeros_like(values), where=mass > self.model.cutoff)
+        found: Floats = np.divide(values, mass, out=np.zeros_like(values), where=mass > self.model.cutoff)
+        return found
 
     def motion(self, w: Weights, momentum: Floats, force: Floats) -> tuple[Floats, Floats]:
         """Velocity and acceleration of the nodes (n,2) at the end of the step."""
@@ -118,7 +123,7 @@ class Dense:
 
     def strained(self, w: Weights, F: Floats, v: Floats) -> Floats:
         """F (P,2,2) after the step by velocities v of the nodes: (I + dt L) F."""
-        L = np.einsum("na,pnb->pab", v, w.dN)
+        L = v.T @ w.dN
         return F + self.model.dt * L @ F
 
     def step(self, b: Floats, sigma_of: "Sigma") -> State:
@@ -130,12 +135,12 @@ class Dense:
         """State with v, x and B of the end of the step, and the velocities of the nodes, filtered."""
         v, a = self.motion(w, self.momentum(w, s.v, s.B), self.force(w, s.F, s.sigma, b))
         v = self.filtered(w, v)
-        flip, dt = self.model.scheme.transfer.flip_fraction, self.model.dt
+        flip, dt = self.flip, self.model.dt
         new = flip * (s.v + dt * (w.N @ a)) + (1 - flip) * (w.N @ v)
         B = s.B
         if self.affine:
             r, _ = self.around(w)
-            B = np.einsum("pn,na,pnb->pab", w.N, v, r)
+            B = (w.N[:, :, None] * v).transpose(0, 2, 1) @ r
         return replace(s, x=s.x + dt * (w.N @ v), v=new, B=B), v
 
     def last(self, s: State, b: Floats, sigma_of: "Sigma") -> State:
@@ -174,6 +179,7 @@ class Sigma:
         self.model, self.particles = model, deepcopy(model.particles)
 
     def __call__(self, F: Floats) -> Floats:
+        """Stress of F."""
         self.particles.F[:] = F
         self.model.material.update(self.particles, self.model.dt)
         return self.particles.sigma.copy()

@@ -1,15 +1,31 @@
 """One step from a generic strained state: against formulas with full matrices, and in a grid that moves affinely."""
 
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
 from mpm_verify.cases.exact.body import (
-    DX, STRAINED, Subject, Variant, by_id, layout, modelled, populated, random, rest, ruled, shaken, variants,
+    BLEND,
+    DX,
+    FILLED,
+    STRAINED,
+    STRESS_UPDATES,
+    Subject,
+    Variant,
+    by_id,
+    layout,
+    modelled,
+    populated,
+    random,
+    rest,
+    ruled,
+    shaken,
+    variants,
 )  # fmt: skip
 from mpm_verify.cases.exact.dense import Dense, Sigma
-from mpm_verify.cases.exact.tested import Part, Reason, Tested, bound, not_asked, off
-from mpm_verify.solver.state import Floats, Particles
+from mpm_verify.cases.exact.tested import Pairs, Part, Reason, Tested, attempt, bound, farthest, not_asked, off
+from mpm_verify.solver.state import Floats
 from mpm_verify.solver.step import Model, advance
 from mpm_verify.solver.weights import Basis
 
@@ -19,11 +35,11 @@ DRIFT = np.array([0.11, -0.07])  # its velocity at the middle, over c
 
 def tests(subject: Subject) -> list[Tested]:
     """Every transfer and stress update in each test."""
-    found = []
-    for variant in variants():
+    found: list[Tested] = []
+    for variant in (*variants(), *(Variant(BLEND, stress) for stress in STRESS_UPDATES)):
         if variant.transfer.partition(":")[0] in KNOWN:
-            found.append(formulas(subject, variant))
-        found += affine(subject, variant)
+            found += attempt(f"step {variant}", Part.STEP, partial(formulas, subject, variant))
+        found += attempt(f"affine {variant}", Part.TO_PARTICLES, partial(affine, subject, variant))
     return found
 
 
@@ -34,22 +50,26 @@ KNOWN = ("flip", "pic", "apic", "fmpm")  # transfers whose formulas stand in den
 def formulas(subject: Subject, variant: Variant) -> Tested:
     """Step of random v, F, sigma and b with a wall that moves; x, v, F, sigma and B against full matrices."""
     p = shaken(subject, populated(subject, layout(filled=True), np.eye(2)))
-    model = modelled(subject, p, variant, ("roller", "free", "fixed", "free"))
+    model = modelled(subject, p, variant, ("roller", "free", "fixed", "free"), FILLED)
     model.walls.value[:], model.walls.rate[:] = 0.02 * subject.speed, 0.1 * subject.speed**2 / DX
     model.particles.affine_velocity *= 0
     if model.particles.affine_velocity.size:
         model.particles.affine_velocity += 0.01 * subject.speed * DX * random(len(p), 4, seed=4)
-    b, dense = by_id(model.particles, "b"), Dense(model)
+    b, dense = by_id(model.particles, "b"), Dense(model, variant.flip)
     order = model.particles.id.copy()
     expected = dense.step(model.particles.b.copy(), Sigma(model))
     advance(model, lambda particles, t: np.copyto(particles.b, b[particles.id]))
     rows = np.argsort(order)
     q, c = model.particles, subject.speed
-    pairs = [(by_id(q, "x"), expected.x[rows], DX), (by_id(q, "v"), expected.v[rows], c),
-             (by_id(q, "F"), expected.F[rows], 1.0), (by_id(q, "sigma"), expected.sigma[rows], subject.stress)]  # fmt: skip
+    pairs: Pairs = [
+        (by_id(q, "x"), expected.x[rows], DX),
+        (by_id(q, "v"), expected.v[rows], c),
+        (by_id(q, "F"), expected.F[rows], 1.0),
+        (by_id(q, "sigma"), expected.sigma[rows], subject.stress),
+    ]
     if dense.affine:
         pairs.append((by_id(q, "affine_velocity").reshape(-1, 2, 2), expected.B[rows], c * DX))
-    return Tested(f"step {variant}", max(off(*pair) for pair in pairs), bound(4 * subject.support), Part.STEP)
+    return Tested(f"step {variant}", farthest(pairs), bound(4 * subject.support), Part.STEP)
 
 
 def affine(subject: Subject, variant: Variant) -> list[Tested]:
@@ -70,14 +90,14 @@ def affine(subject: Subject, variant: Variant) -> list[Tested]:
     x, v, F = (by_id(model.particles, name) for name in ("x", "v", "F"))
     corners = subject.basis.corners(x, F, by_id(model.particles, "domain"), DX)
     advance(model, rest)
-    q, flip = model.particles, model.scheme.transfer.flip_fraction
+    q, flip = model.particles, variant.flip
     strain = L - dt * pull if variant.stress == "usf" else L
-    pairs = [
+    pairs: Pairs = [
         (by_id(q, "x"), x + dt * velocity(x), DX),
         (by_id(q, "v"), flip * (v + dt * acceleration(x)) + (1 - flip) * velocity(x), c),
         (by_id(q, "F"), (np.eye(2) + dt * strain) @ F, 1.0),
     ]
-    found = [Tested(f"affine {variant}", max(off(*pair) for pair in pairs), bound(4 * subject.support),
+    found = [Tested(f"affine {variant}", farthest(pairs), bound(4 * subject.support),
                     Part.TO_PARTICLES)]  # fmt: skip
     return [*found, domains(subject, variant, model, corners, velocity, np.eye(2) + dt * strain)]
 

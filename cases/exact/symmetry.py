@@ -1,16 +1,27 @@
 """Mirror and quarter turn: a body, its walls and its forces, mirrored or turned, give the mirrored or turned answer."""
 
-from typing import Any
+from functools import partial
 
 import numpy as np
 
 from mpm_verify.cases.exact.body import (
-    CELLS, DX, MIRROR, QUARTER, Subject, Variant, by_id, layout, modelled, rotated, shaken, variants,
+    DX,
+    FILLED,
+    MIRROR,
+    QUARTER,
+    Subject,
+    Variant,
+    by_id,
+    layout,
+    modelled,
+    rotated,
+    shaken,
+    variants,
 )  # fmt: skip
-from mpm_verify.cases.exact.tested import Part, Reason, Tested, bound, not_asked, off
+from mpm_verify.cases.exact.tested import Pairs, Part, Reason, Tested, attempt, bound, farthest, not_asked
 from mpm_verify.solver.boundary import Kind
 from mpm_verify.solver.layout import Layout
-from mpm_verify.solver.state import Floats, Particles
+from mpm_verify.solver.state import Floats, Ints, Particles
 from mpm_verify.solver.step import Model, advance
 
 STEPS = 2
@@ -24,26 +35,33 @@ MOVED: dict[str, tuple[Floats, Sides]] = {
 
 def tests(subject: Subject) -> list[Tested]:
     """Mirror and quarter turn with every step."""
-    own = getattr(subject.material, "reversal", 0.0)
     found = []
     for variant in variants():
-        plain = None if own else run(subject, variant, np.eye(2), SIDES)
-        for name, (Q, sides) in MOVED.items():
-            told = f"{name} {variant}"
-            if plain is None:
-                found.append(not_asked(told, Part.SYMMETRY, Reason.OWN_AXES))
-                continue
-            moved = run(subject, variant, Q, sides)
-            found.append(
-                Tested(told, apart(subject, plain, moved, Q), bound(4 * STEPS * subject.support), Part.SYMMETRY)
-            )
+        found += attempt(f"mirror {variant}", Part.SYMMETRY, partial(moved, subject, variant))
     return found
+
+
+def moved(subject: Subject, variant: Variant) -> list[Tested]:
+    """Body as it is, mirrored and turned."""
+    names = {name: f"{name} {variant}" for name in MOVED}
+    if getattr(subject.material, "reversal", 0.0):
+        return [not_asked(name, Part.SYMMETRY, Reason.OWN_AXES) for name in names.values()]
+    plain, most = run(subject, variant, np.eye(2), SIDES), bound(4 * STEPS * subject.support)
+    return [
+        Tested(names[name], distance(subject, plain, run(subject, variant, Q, sides), Q), most, Part.SYMMETRY)
+        for name, (Q, sides) in MOVED.items()
+    ]
 
 
 def middle(Q: Floats) -> Floats:
     """Middle of the grid, whose sides are swapped by a quarter turn."""
-    centre: Floats = 0.5 * DX * (CELLS[::-1] if Q[0, 0] == 0 else CELLS)
+    centre: Floats = 0.5 * DX * cells(Q).astype(np.float64)
     return centre
+
+
+def cells(Q: Floats) -> Ints:
+    """Cells of the grid mapped by Q."""
+    return FILLED[::-1] if Q[0, 0] == 0 else FILLED
 
 
 def run(subject: Subject, variant: Variant, Q: Floats, sides: Sides) -> Particles:
@@ -57,18 +75,18 @@ def run(subject: Subject, variant: Variant, Q: Floats, sides: Sides) -> Particle
     shaken(subject, p)
     p.v[:], b, p.sigma[:] = p.v @ Q.T, p.b @ Q.T, rotated(p.sigma, Q)
     p.F[:] = Q @ p.F @ Q.T
-    model: Model = modelled(subject, p, variant, sides, turned=Q[0, 0] == 0)
+    model: Model = modelled(subject, p, variant, sides, cells(Q))
     for _ in range(STEPS):
         advance(model, lambda particles, t: np.copyto(particles.b, b[particles.id]))
     return p
 
 
-def apart(subject: Subject, plain: Particles, moved: Particles, Q: Floats) -> float:
+def distance(subject: Subject, plain: Particles, other: Particles, Q: Floats) -> float:
     """Distance of the moved answer from the plain one, moved."""
-    pairs: list[tuple[Any, Any, float]] = [
-        (by_id(moved, "x") - middle(Q), (by_id(plain, "x") - middle(np.eye(2))) @ Q.T, DX),
-        (by_id(moved, "v"), by_id(plain, "v") @ Q.T, subject.speed),
-        (by_id(moved, "F"), Q @ by_id(plain, "F") @ Q.T, 1.0),
-        (by_id(moved, "sigma"), rotated(by_id(plain, "sigma"), Q), subject.stress),
+    pairs: Pairs = [
+        (by_id(other, "x") - middle(Q), (by_id(plain, "x") - middle(np.eye(2))) @ Q.T, DX),
+        (by_id(other, "v"), by_id(plain, "v") @ Q.T, subject.speed),
+        (by_id(other, "F"), Q @ by_id(plain, "F") @ Q.T, 1.0),
+        (by_id(other, "sigma"), rotated(by_id(plain, "sigma"), Q), subject.stress),
     ]
-    return max(off(*pair) for pair in pairs)
+    return farthest(pairs)

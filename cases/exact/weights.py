@@ -1,12 +1,23 @@
 """Weights of the basis on a strained body: what every basis reproduces, the domains that it averages over, and sums."""
 
+from functools import partial
+
 import numpy as np
 
 from mpm_verify.cases.exact.body import (
-    DX, STRAINED, Subject, Variant, layout, modelled, populated, random, shaken,
+    DX,
+    STRAINED,
+    Subject,
+    Variant,
+    deformed,
+    layout,
+    modelled,
+    populated,
+    random,
+    shaken,
 )  # fmt: skip
 from mpm_verify.cases.exact.dense import weights
-from mpm_verify.cases.exact.tested import Part, Reason, Tested, bound, not_asked, off
+from mpm_verify.cases.exact.tested import Pairs, Part, Reason, Tested, attempt, bound, farthest, not_asked, off
 from mpm_verify.solver.state import Floats
 from mpm_verify.solver.step import Model, particles_to_grid
 
@@ -14,8 +25,13 @@ from mpm_verify.solver.step import Model, particles_to_grid
 def tests(subject: Subject) -> list[Tested]:
     """Moments of the weights, domains, and sums over the nodes with each transfer that adds to them."""
     model = modelled(subject, populated(subject, layout(), STRAINED), Variant())
-    found = [moments(subject, model), domain_moment(subject, model), *areas(subject, model)]
-    return found + [one for transfer in ("flip", "apic") for one in balances(subject, Variant(transfer))]
+    found = attempt("moments", Part.WEIGHTS, partial(moments, subject, model))
+    found += attempt("positive", Part.WEIGHTS, partial(positive, subject, model))
+    found += attempt("domain_moment", Part.DOMAINS, partial(domain_moment, subject, model))
+    found += attempt("domain_area", Part.DOMAINS, partial(areas, subject, model))
+    for transfer in ("flip", "apic"):
+        found += attempt(f"sum_mass {transfer}", Part.TO_GRID, partial(balances, subject, Variant(transfer)))
+    return found
 
 
 def moments(subject: Subject, model: Model) -> Tested:
@@ -23,8 +39,21 @@ def moments(subject: Subject, model: Model) -> Tested:
     p = model.particles
     w, away = weights(model, p.x, p.F), (model.grid.nodes - 1.5) / DX
     L = np.einsum("pnb,na->pab", w.dN * DX, away)
-    pairs = [(w.N.sum(axis=1), 1.0), ((w.dN * DX).sum(axis=1), 0.0), (w.N @ away, (p.x - 1.5) / DX), (L, np.eye(2))]
-    return Tested("moments", max(off(*pair, 1.0) for pair in pairs), bound(4 * subject.support), Part.WEIGHTS)
+    pairs: Pairs = [
+        (w.N.sum(axis=1), 1.0, 1.0),
+        ((w.dN * DX).sum(axis=1), 0.0, 1.0),
+        (w.N @ away, (p.x - 1.5) / DX, 1.0),
+        (L, np.eye(2), 1.0),
+    ]
+    return Tested("moments", farthest(pairs), bound(4 * subject.support), Part.WEIGHTS)
+
+
+def positive(subject: Subject, model: Model) -> Tested:
+    """Shape values are not negative, and so no node is outside the support."""
+    if not subject.basis.positive:
+        return not_asked("positive", Part.WEIGHTS, Reason.NEGATIVE)
+    least = weights(model, model.particles.x, model.particles.F).N.min()
+    return Tested("positive", off(min(least, 0.0), 0.0, 1.0), bound(1), Part.WEIGHTS)
 
 
 def domain_moment(subject: Subject, model: Model) -> Tested:
@@ -43,7 +72,7 @@ def domain_moment(subject: Subject, model: Model) -> Tested:
 
 
 def areas(subject: Subject, model: Model) -> list[Tested]:
-    """Areas of the domains against the volumes that they stand for, and corners that adjacent domains share."""
+    """Areas of the domains against the volumes that they stand for, and corners at those of the pieces, deformed."""
     p, basis = model.particles, subject.basis
     corners = basis.corners(p.x, p.F, p.domain, DX)
     if corners is None or not basis.domain_motion:
@@ -55,11 +84,10 @@ def areas(subject: Subject, model: Model) -> list[Tested]:
     tested = [Tested("domain_area", found, bound(16), Part.DOMAINS)]
     if basis.domain_motion != "deformed":
         return [*tested, not_asked("shared_corners", Part.DOMAINS, Reason.NOT_FOLLOWED)]
-    together = np.lexsort(np.round(layout().corners.reshape(-1, 2) / DX, 6).T)
-    reference, moved = (rows.reshape(-1, 2)[together] for rows in (layout().corners, corners[np.argsort(p.id)]))
-    same = (np.abs(np.diff(reference, axis=0)) < 1e-6 * DX).all(axis=1)
-    gap = float(np.abs(np.diff(moved, axis=0)[same]).max()) / DX
-    return [*tested, Tested("shared_corners", gap, bound(16), Part.DOMAINS)]
+    expected = deformed(STRAINED)(layout().corners[p.id].reshape(-1, 2)).reshape(-1, 4, 2)
+    apart = np.linalg.norm(corners[:, :, None] - expected[:, None], axis=-1)  # in any order
+    gap = max(apart.min(axis=1).max(), apart.min(axis=2).max())
+    return [*tested, Tested("shared_corners", off(gap, 0.0, DX), bound(16), Part.DOMAINS)]
 
 
 def area(corners: Floats) -> Floats:
@@ -78,10 +106,9 @@ def balances(subject: Subject, variant: Variant) -> list[Tested]:
     if p.affine_velocity.size:
         p.affine_velocity[:] = affine
     particles_to_grid(model)
-    # by particle: of the same sums, so of the strain that each basis keeps
     V = p.V0 * p.J
     plane = p.sigma[:, [0, 3, 3, 1]].reshape(-1, 2, 2)
-    unit = rho * DX**2 * len(p)
+    unit = rho * DX**2  # mass of a cell
     centre = (p.x - 1.5) / DX
     nodes = (g.nodes - 1.5) / DX
     virtual = np.einsum("na,nb->ab", g.force, nodes) * DX
@@ -97,9 +124,8 @@ def balances(subject: Subject, variant: Variant) -> list[Tested]:
         "sum_force": [(g.force.sum(axis=0), (p.m[:, None] * p.b).sum(axis=0), unit * c * c / DX)],
         "virtual_work": [(virtual, work, unit * c * c)],
     }
-    parts = {"virtual_work": Part.TO_GRID}
     return [
-        Tested(f"{name} {variant.transfer}", max(off(*pair) for pair in found), bound(subject.support + 10),
-               parts.get(name, Part.TO_GRID))
+        Tested(f"{name} {variant.transfer}", farthest(found), bound(subject.support + 10),
+               Part.TO_GRID)
         for name, found in pairs.items()
     ]  # fmt: skip

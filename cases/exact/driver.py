@@ -1,0 +1,88 @@
+"""Constitutive model without a grid: rows of particles that are taken from one F to the next."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from mpm_verify.cases.exact.tested import off
+from mpm_verify.solver.state import Floats, Particles
+
+
+@dataclass(frozen=True)
+class Point:
+    """State of material points after a path: sigma (P,4) and history (P,H)."""
+
+    sigma: Floats
+    history: Floats
+
+
+def drive(material: Any, path: Sequence[Floats], sigma: Floats, history: Floats | None = None) -> Point:
+    """Take points under sigma (P,4) at path[0] through the F (P,2,2) of a path; history as of the model at its start.
+
+    `history` (P,H) replaces what the model begins with.
+    """
+    count = len(sigma)
+    p = Particles(np.zeros((count, 2)), np.ones(count), np.ones(count), np.zeros((count, 0)))
+    p.F[:], p.sigma[:] = path[0], sigma
+    material.start(p)
+    if history is not None:
+        p.history[:] = history
+    for F in path[1:] if p.F_old.size else path[-1:]:
+        p.F[:] = F
+        material.update(p, 1.0)
+    return Point(p.sigma.copy(), p.history.copy())
+
+
+def apart(material: Any, one: Floats, other: Floats, unit: float) -> float:
+    """Distance of histories (P,H): works over a stress, all else as strains, ratios and numbers."""
+    units = np.array([unit if name.startswith("work") else 1.0 for name in material.memory])
+    return off(one / units, other / units, 1.0)
+
+
+def straight(increments: Floats) -> Floats:
+    """F (P,2,2) of one step from the unit tensor whose strain increment of the middle of the step is D (P,2,2).
+
+    (F - I) ((F + I)/2)^-1 = D, so F = (I - D/2)^-1 (I + D/2); symmetric where D is, and so without rotation.
+    """
+    half = increments / 2
+    return np.asarray(np.linalg.solve(np.eye(2) - half, np.eye(2) + half), np.float64)
+
+
+def symmetric(rows: Floats) -> Floats:
+    """Tensors (P,2,2) of xx, yy, xy (P,3)."""
+    found: Floats = rows[:, [0, 2, 2, 1]].reshape(-1, 2, 2)
+    return found
+
+
+def elastic(lam: float, mu: float, D: Floats) -> Floats:
+    """Stress increments (P,4) of linear elasticity for strain increments D (P,2,2) in plane strain."""
+    trace = np.trace(D, axis1=1, axis2=2)
+    bulk = lam * trace
+    found: Floats = np.stack(
+        [bulk + 2 * mu * D[:, 0, 0], bulk + 2 * mu * D[:, 1, 1], bulk, 2 * mu * D[:, 0, 1]], axis=1
+    )
+    return found
+
+
+def compliance(lam: float, mu: float, sigma: Floats) -> Floats:
+    """Elastic strains xx, yy, zz, xy (P,4) of linear elasticity under stresses (P,4)."""
+    trace = sigma[:, :3].sum(axis=1)
+    volume = lam / (3 * lam + 2 * mu) * trace
+    found: Floats = np.divide(sigma, 2 * mu, dtype=np.float64)
+    found[:, :3] -= (volume / (2 * mu))[:, None]
+    return found
+
+
+def strength(material: Any) -> tuple[float, float]:
+    """Sine of the friction angle and cohesion times its cosine: in the plane t <= s sin + c cos."""
+    angle = np.radians(material.friction_angle)
+    return float(np.sin(angle)), float((material.cohesion or 0.0) * np.cos(angle))
+
+
+def circle(sigma: Floats) -> tuple[Floats, Floats]:
+    """Centre s, compression positive, and radius t of Mohr's circle in the plane, of stresses (P,4)."""
+    s = -(sigma[:, 0] + sigma[:, 1]) / 2
+    t: Floats = np.hypot((sigma[:, 0] - sigma[:, 1]) / 2, sigma[:, 3])
+    return s, t

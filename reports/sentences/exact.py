@@ -1,0 +1,133 @@
+"""Sentences about the exactness battery: what each test holds, what it points to, and why it is not asked."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from mpm_verify.cases.exact.case import ExactRemark as Code
+from mpm_verify.cases.exact.tested import FAILED, Part, Reason
+from mpm_verify.reports.sentences.remarks import Words
+
+Numbers = Mapping[str, Any]
+
+HEADINGS = {
+    "weights": "Weights, domains and sums over the nodes",
+    "motion": "Rigid motion under uniform forces",
+    "walls": "No force, and walls",
+    "step": "One step from a strained state",
+    "symmetry": "Mirror and quarter turn",
+    "stress": "Constitutive model",
+    "history": "Memory, strength and cut-off",
+    "smoothing": "Smoothing",
+    "state": "Stored state and step limit",
+}
+HELD = {
+    "moments": "Σ N = 1, Σ dN = 0, Σ N x_i = x_p and Σ dN ⊗ x_i = I",
+    "positive": "no shape value is negative",
+    "domain_moment": "Σ N x_i y_i is the mean of x y over the corners of the domain",
+    "domain_area": "the area of each domain is the volume that it stands for",
+    "shared_corners": "corners of domains are those of adjacent pieces of the body, which share them",
+    "sum_mass": "mass and its first moment, nodes against particles",
+    "sum_momentum": "momentum and its first moment, nodes against particles",
+    "sum_force": "the sum of nodal forces is that of the body forces",
+    "virtual_work": "work of the nodal forces on an affine velocity, random stress",
+    "fall": "free fall and throw under a force that grows in time: x, v, F, σ",
+    "throw_damped_local": "a throw with the usual local damping",
+    "throw_damped_objective": "a throw with objective damping",
+    "oscillator_local": "an oscillator with the usual local damping",
+    "oscillator_objective": "an oscillator with objective damping",
+    "slide": "a body that slides along rollers keeps its velocity",
+    "no_force_free": "no force, no walls: each particle keeps its velocity",
+    "no_force_roller": "no force between rollers: each particle keeps its velocity",
+    "no_force_fixed": "no force in a fixed box: each particle keeps its velocity",
+    "step": "a step of random v, F, σ and b beside walls, against full matrices of weights",
+    "affine": "a step of a strained body in an affine velocity: x, v, F",
+    "domain_motion": "corners of domains after that step",
+    "mirror": "a mirrored body gives the mirrored answer",
+    "quarter_turn": "a body turned by 90° gives the turned answer",
+    "stress": "σ, zz too, against the complex step of the energy, F without symmetry",
+    "stress_turned": "the same with F turned by any angle",
+    "rigid_turn": "a turn of any angle turns the stress and changes no memory",
+    "turned_path": "a path of strain that is turned gives the turned stress",
+    "increment": "elastic stress increments, zz too, from the stated moduli",
+    "constants": "shear and bulk modulus are those of E and ν",
+    "wave_speed": "ρ c² is λ + 2 μ",
+    "history_sums": "what the memory sums goes on from what it was",
+    "plastic_volume": "plastic and void volume are what elasticity leaves",
+    "plastic_shear": "plastic shear is what elasticity leaves",
+    "strength": "t ≤ s sin φ + c cos φ after strains far beyond yield",
+    "cut_off": "a soil that is pulled apart is at its cut-off or apex",
+    "smoothing_means": "projected values against sums by cells and nodes",
+    "smoothing_constants": "constants stay",
+    "smoothing_adjoint": "Σ V a P(b) = Σ V b P(a)",
+    "smoothing_twice": "projected twice is projected once",
+    "smoothing_parts": "only the parts that a smoothing names are projected",
+    "smoothing_uniform": "a uniform strain is smoothed to itself",
+    "smoothing_ratio": "F-bar has the projected volume ratio of the step",
+    "restart": "a run that goes on from stored arrays gives the same bits",
+    "step_limit": "1.05 of the step limit is refused, and 0.95 is not",
+    "stable_step": "kinetic energy does not grow below the limit",
+}
+PARTS = {
+    Part.WEIGHTS: "the weights of the basis: its fill in solver/basis",
+    Part.DOMAINS: "the domains of the basis: half sides, corners, convect in solver/basis",
+    Part.TO_GRID: "particles to grid: scatter in solver/transfer.py, or give of the transfer",
+    Part.MOTION: "the equation of motion: solve in solver/boundary.py, or the load",
+    Part.TO_PARTICLES: "grid to particles: gather, deform in solver/transfer.py, advect in solver/transfers/_passes.py",
+    Part.STEP: "a pass of the step: solver/step.py, solver/transfer.py, solver/transfers, or the order of passes",
+    Part.SYMMETRY: "what tells x from y, or left from right: indices of the weights, walls, forces",
+    Part.WALLS: "walls: solve in solver/boundary.py, or the fraction of FLIP",
+    Part.DAMPING: "solver/damping.py",
+    Part.STRESS: "the stress of the constitutive model: its kernel in solver/material",
+    Part.RATE: "the objective rate: unrotate and rotate in solver/rates, strain increments in solver/frames.py",
+    Part.HISTORY: "what the constitutive model writes to particles.history",
+    Part.CUT_OFF: "the tension cut-off or the apex of the constitutive model",
+    Part.SMOOTHING: "solver/smoothing",
+    Part.STATE: "something that a step needs and the arrays of the particles do not hold",
+    Part.TIME_STEP: "check_time_step in solver/model.py, or the wave speed of the constitutive model",
+}
+REASONS = {
+    Reason.BLENDS: "particles take a mean of the grid's velocities by construction",
+    Reason.NEGATIVE: "the basis has negative weights by construction",
+    Reason.NO_DOMAINS: "the weights are those of a point",
+    Reason.NOT_FOLLOWED: "domains do not shear and turn with the body by construction",
+    Reason.CUT: "the limit of the method cuts its domains",
+    Reason.NO_RATE_FORM: "the stress is a function of F",
+    Reason.NO_ENERGY: "the material is in rate form and has no energy",
+    Reason.NO_MODULI: "the material states no moduli",
+    Reason.STRETCHED: "the rate carries the stress by the stretch too",
+    Reason.NO_FRICTION: "the material has no friction",
+    Reason.IN_SPACE: "the yield surface is one of all three principal stresses",
+    Reason.OPENED: "strain that opens and closes voids is neither elastic nor plastic",
+    Reason.NO_SUMS: "the material keeps no such sum, or its moduli change on the way",
+    Reason.OWN_AXES: "the material tells its own axes apart",
+    Reason.FILTER: "through nodes and back is a filter, and no projector",
+    Reason.OTHER_RATE: "smoothing does not take this rate",
+}
+
+
+def holds(n: Numbers) -> str:
+    """Sentence for a battery without a miss."""
+    others = f"; {n['others']:,} were not asked, each for a reason" if n["others"] else ""
+    pairs = f"{n['runs']} pair{'s' * (n['runs'] != 1)} of method and material"
+    return f"All {n['asked']:,} tests of {pairs} hold to round-off{others}."
+
+
+def points(n: Numbers) -> str:
+    """Sentence on a test that failed: what it holds, by how much it is missed, and what it points to."""
+    size = (
+        "the run ended" if n["residual"] >= FAILED else f"{n['residual']:.2g}, where round-off makes {n['bound']:.1g}"
+    )
+    more = f", and {n['failed'] - 1} more" if n["failed"] > 1 else ""
+    return (
+        f"{n['test']} ({HELD[str(n['test'])]}): {size} ({n['name']}, {n['run']}{more}). It points to "
+        f"{PARTS[Part(str(n['part']))]}."
+    )
+
+
+REMARKS: dict[str, Words] = {
+    Code.HOLDS: holds,
+    Code.FAILS: lambda n: f"{n['failed']:,} of {n['asked']:,} tests do not hold.",
+    Code.POINTS: points,
+    Code.HELD: lambda n: HELD[str(n["test"])],
+    Code.NOT_ASKED: lambda n: f"{n['test']}: {n['count']} times, as {REASONS[Reason(str(n['reason']))]}.",
+}
