@@ -8,6 +8,7 @@ A request is a line of JSON on standard input: `copy` (folder that holds mpm_ver
 answer is a line with `ended`: "" for an end by itself, "hang", or "crash" with `signal`.
 """
 
+import ctypes
 import json
 import os
 import resource
@@ -20,11 +21,15 @@ LIBRARIES = ("numpy", "scipy.optimize", "scipy.stats", "numba", "sympy", "mpmath
              "matplotlib.figure", "meshio", "rich.table", "typer")  # fmt: skip
 PAUSE = 0.02  # seconds
 MEGABYTE = 2**20
+WAITS = 10  # times its processor time that a child may take on a busy machine
+PARENT_ENDS = 1  # PR_SET_PDEATHSIG of Linux: a child ends with the server, however that ends
 
 
 def child(request: dict) -> None:  # type: ignore[type-arg]
     """Become the child: limits, the copy first on Python's path, and its entry."""
     os.setsid()
+    ctypes.CDLL(None).prctl(PARENT_ENDS, signal.SIGKILL)
+    resource.setrlimit(resource.RLIMIT_CPU, (request["seconds"], request["seconds"] + 5))
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     log = os.open(request["log"], os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
     os.dup2(log, 1)
@@ -54,14 +59,18 @@ def one_thread() -> None:
 
 
 def watched(pid: int, seconds: float, parent: int) -> dict[str, object]:
-    """Wait for a child, and end it with all that it started when its time is over or nobody is left to hear of it."""
-    until = time.monotonic() + seconds
+    """Wait for a child, and end it with all that it started when its time is over or nobody is left to hear of it.
+
+    `seconds` are of its processor, so that a busy machine makes no catch.
+    """
+    until = time.monotonic() + WAITS * seconds
     while True:
         done, status, used = os.wait4(pid, os.WNOHANG)
         if done:
             code = os.waitstatus_to_exitcode(status)
             cpu = used.ru_utime + used.ru_stime
-            return {"ended": "crash" if code else "", "code": code, "cpu": cpu}
+            ended = "hang" if code == -signal.SIGXCPU else "crash" if code else ""
+            return {"ended": ended, "code": code, "cpu": cpu}
         late, alone = time.monotonic() > until, os.getppid() != parent
         if late or alone:
             os.killpg(pid, signal.SIGKILL)
