@@ -71,8 +71,16 @@ def examine(study: Study[Run], results: Mapping[str, Result], store: Store) -> C
         if each.name in WANTED and each.total >= ENOUGH
     ]
     quiet = [row for row in found if row.kind == "placebo"]
-    checks.append(Check("Placebos", f"alarms of {len(quiet)}", float(sum(row.noticed() for row in quiet)), 0.0, "at_most",
-                        "nothing that matters is changed"))  # fmt: skip
+    checks.append(
+        Check(
+            "Placebos",
+            f"alarms of {len(quiet)}",
+            float(sum(row.noticed() for row in quiet)),
+            0.0,
+            "at_most",
+            "nothing that matters is changed",
+        )
+    )
     known = [row for row in found if row.name == OVERWRITTEN]
     checks += [Check("Rates", OVERWRITTEN, float(row.noticed()), 1.0, "at_least", "known blind spot") for row in known]
     return Campaign(tuple(found), tuple(made), tuple(checks))

@@ -23,9 +23,14 @@ def execute(run: Run, tick: Callable[[float], None] = lambda fraction: None) -> 
     missing = [check for check in checks if check not in outcomes]
     outcomes |= {check: ENDS[asked.ended] if check == missing[0] else "NOT_RUN" for check in missing}
     result = Result(
-        run=run, digest=run.digest, status="finished", outcomes=outcomes,
+        run=run,
+        digest=run.digest,
+        status="finished",
+        outcomes=outcomes,
         evidence={answer.check: answer.evidence for answer in asked.answers if answer.evidence},
         values={f"seconds {answer.check}": answer.seconds for answer in asked.answers},
-        wall_s=time.perf_counter() - started, cpu_s=asked.cpu, environment=environment(),
-    )  # fmt: skip
+        wall_s=time.perf_counter() - started,
+        cpu_s=asked.cpu,
+        environment=environment(),
+    )
     return result, {}

@@ -21,11 +21,24 @@ from mpm_verify.cases.detect.defect import Defect
 from mpm_verify.solver.source_hash import TOP
 
 SWAPPED: dict[type[ast.operator], str] = {ast.Add: "-", ast.Sub: "+", ast.Mult: "/", ast.Div: "*"}
-TURNED: dict[type[ast.cmpop], str] = {ast.Lt: "<=", ast.LtE: "<", ast.Gt: ">=", ast.GtE: ">", ast.Eq: "!=", ast.NotEq: "=="}
+TURNED: dict[type[ast.cmpop], str] = {
+    ast.Lt: "<=",
+    ast.LtE: "<",
+    ast.Gt: ">=",
+    ast.GtE: ">",
+    ast.Eq: "!=",
+    ast.NotEq: "==",
+}
 ROOMS = ("solver", "cases/judging", "cases/mms", "cases/harness")
 PLAIN = ("__init__", "_own", "own_", "plugins", "forked", "promise", "external", "digits", "negative_controls")
-OWN = {"mpm": "mpm", "cpdi": "cpdi", "_parallelogram": "cpdi", "cpdi2": "cpdi2", "bspline2": "bspline2",
-       "tensor": "bspline2"}  # file: method  # fmt: skip
+OWN = {
+    "mpm": "mpm",
+    "cpdi": "cpdi",
+    "_parallelogram": "cpdi",
+    "cpdi2": "cpdi2",
+    "bspline2": "bspline2",
+    "tensor": "bspline2",
+}  # file: method
 
 
 def mutants(file: str) -> tuple[Defect, ...]:
@@ -84,7 +97,11 @@ def _mutants(file: str, text: str) -> tuple[Defect, ...]:
 def _changes(tree: ast.AST) -> Iterator[tuple[ast.expr, str, str]]:
     """Nodes with their new text and the operator."""
     for node in _computing(tree):
-        if isinstance(node, ast.BinOp) and type(node.op) in SWAPPED and not isinstance(node.left, ast.Constant | ast.JoinedStr):
+        if (
+            isinstance(node, ast.BinOp)
+            and type(node.op) in SWAPPED
+            and not isinstance(node.left, ast.Constant | ast.JoinedStr)
+        ):
             left, right = ast.unparse(node.left), ast.unparse(node.right)
             word = "sign" if isinstance(node.op, ast.Add | ast.Sub) else "factor"
             yield node, f"(({left}) {SWAPPED[type(node.op)]} ({right}))", word
@@ -95,7 +112,11 @@ def _changes(tree: ast.AST) -> Iterator[tuple[ast.expr, str, str]]:
         elif isinstance(node, ast.Compare) and len(node.ops) == 1 and type(node.ops[0]) in TURNED:
             turned = f"{ast.unparse(node.left)} {TURNED[type(node.ops[0])]} {ast.unparse(node.comparators[0])}"
             yield node, f"({turned})", "bound"
-        elif isinstance(node, ast.Subscript) and isinstance(node.slice, ast.Constant) and isinstance(node.slice.value, int):
+        elif (
+            isinstance(node, ast.Subscript)
+            and isinstance(node.slice, ast.Constant)
+            and isinstance(node.slice.value, int)
+        ):
             yield node, f"{ast.unparse(node.value)}[{max(0, node.slice.value - 1) if node.slice.value else 1}]", "index"
         elif isinstance(node, ast.Call):
             yield from _calls(node)

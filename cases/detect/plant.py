@@ -1,4 +1,4 @@
-"""Copies of the package that defects are planted in, below a folder of the campaign's own; the original is only read."""
+"""Copies of the package that defects are planted in, below a folder of the campaign's own; the original is read."""
 
 import compileall
 import hashlib
@@ -39,16 +39,15 @@ def files() -> list[Path]:
 
 @cache
 def home() -> Path:
-    """The campaign's own folder below the temporary one, for this version of the package: nobody else may write there.
+    """The campaign's own folder below the temporary one: nobody else may write there. Raises OSError where one may.
 
-    Raises OSError where it is somebody else's.
+    Kernels and Results of the sound package in it are named by what they are made from, and serve every version.
     """
     base = Path(tempfile.gettempdir()) / f"mpm-verify-detect-{os.getuid()}"
     base.mkdir(mode=0o700, parents=True, exist_ok=True)
     if not private(base):
         raise PermissionError(1, "another user may write into the folder of the campaign", str(base))
-    (base / examined()).mkdir(exist_ok=True)
-    return base / examined()
+    return base
 
 
 def copied(to: Path) -> Path:

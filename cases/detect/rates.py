@@ -1,4 +1,7 @@
-"""Rates of a campaign: how many of a kind were noticed, with the exact interval for a fraction (Clopper & Pearson 1934)."""
+"""Rates of a campaign: how many of a kind were noticed, with the exact interval of a fraction.
+
+Intervals are those of Clopper & Pearson 1934, doi:10.1093/biomet/26.4.404.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -73,11 +76,25 @@ def rows(results: Sequence[Any]) -> list[Row]:
     found = []
     for result in results:
         planted, usual = one(result.run.defect), sound.get((result.run.method, result.run.checks), {})
-        changed = {check: outcome for check, outcome in result.outcomes.items()
-                   if outcome not in ("PASS", "NOT_RUN", usual.get(check) if result.run.defect != NONE else "")}  # fmt: skip
+        changed = {
+            check: outcome
+            for check, outcome in result.outcomes.items()
+            if outcome not in ("PASS", "NOT_RUN", usual.get(check) if result.run.defect != NONE else "")
+        }
         first = next((result.evidence[check] for check in changed if check in result.evidence), "")
-        found.append(Row(planted.name, result.run.method, planted.kind, planted.by, planted.file, planted.listed,
-                         planted.equivalent, changed, first))  # fmt: skip
+        found.append(
+            Row(
+                planted.name,
+                result.run.method,
+                planted.kind,
+                planted.by,
+                planted.file,
+                planted.listed,
+                planted.equivalent,
+                changed,
+                first,
+            )
+        )
     return found
 
 

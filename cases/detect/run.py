@@ -1,18 +1,30 @@
 """Run and Result of a campaign: one defect in a copy of the package, and what each check answers."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cache
 from hashlib import sha256
 from typing import ClassVar, Literal
 
-from mpm_verify.cases.detect.defect import Defect, defects
+from mpm_verify.cases.detect.defect import NONE, Defect, defects
 from mpm_verify.cases.detect.mutate import mutant
 from mpm_verify.cases.harness.study import ResultRecord, RunRecord, axis
 from mpm_verify.solver.plugins import METHODS
 
 Sets = Literal["full", "quick"]
 ORDERS, EXACT = ("axis_aligned", "clamped_shear"), ("exact",)
-OTHERS = ("derivation", "material", "objectivity", "wave_bar", "column", "smoothing", "norms", "rule", "store", "numbers")
+OTHERS = (
+    "derivation",
+    "material",
+    "objectivity",
+    "wave_bar",
+    "column",
+    "smoothing",
+    "norms",
+    "rule",
+    "store",
+    "numbers",
+)
 CHECKS = {"full": (*ORDERS, *EXACT, *OTHERS), "quick": (*ORDERS, *EXACT, "rule", "norms")}
 USUAL = "cpdi"
 EACH = 7  # of the defects in a quick campaign
@@ -70,6 +82,13 @@ class Result(ResultRecord[Run]):
     evidence: dict[str, str] = field(default_factory=dict)
 
 
-AXES = {"defect": tuple(defects())}
-_kinds = {kind: [d.name for d in defects().values() if d.kind == kind] for kind in ("order", "robustness", "judge", "placebo")}
+def mixed(names: Iterable[str]) -> tuple[str, ...]:
+    """Names in an order that mixes the parts: a campaign that is stopped has seen some of each."""
+    return tuple(sorted(names, key=lambda name: (name != NONE, sha256(name.encode()).hexdigest())))
+
+
+AXES = {"defect": mixed(defects())}
+_kinds = {
+    kind: [d.name for d in defects().values() if d.kind == kind] for kind in ("order", "robustness", "judge", "placebo")
+}
 QUICK = {"defect": tuple(name for names in _kinds.values() for name in names[::EACH]), "checks": ("quick",)}

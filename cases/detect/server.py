@@ -17,8 +17,21 @@ import sys
 import time
 from importlib import import_module
 
-LIBRARIES = ("numpy", "scipy.optimize", "scipy.stats", "numba", "sympy", "mpmath", "pydantic", "pandas", "jinja2",
-             "matplotlib.figure", "meshio", "rich.table", "typer")  # fmt: skip
+LIBRARIES = (
+    "numpy",
+    "scipy.optimize",
+    "scipy.stats",
+    "numba",
+    "sympy",
+    "mpmath",
+    "pydantic",
+    "pandas",
+    "jinja2",
+    "matplotlib.figure",
+    "meshio",
+    "rich.table",
+    "typer",
+)
 PAUSE = 0.02  # seconds
 MEGABYTE = 2**20
 WAITS = 10  # times its processor time that a child may take on a busy machine

@@ -13,14 +13,21 @@ from pathlib import Path
 from typing import Any
 
 from mpm_verify.cases.detect.defect import NONE, Defect, defects
-from mpm_verify.cases.detect.plant import Planted, copied, home
+from mpm_verify.cases.detect.plant import Planted, copied, examined, home
 
 SERVER = Path(__file__).with_name("server.py")
 ENTRY = "mpm_verify.verify.detecting.child"
 SECONDS, MEGABYTES = 60, 6000  # processor time and room of a child: what recompiles most takes 30 s and 1500 MB
 FIRST = 600  # seconds of the first child, which compiles and runs everything
-ALONE = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1", "NUMBA_NUM_THREADS": "1",
-         "GOMP_SPINCOUNT": "20000", "MPLBACKEND": "Agg", "PYTHONHASHSEED": "0"}  # fmt: skip
+ALONE = {
+    "OMP_NUM_THREADS": "1",
+    "OPENBLAS_NUM_THREADS": "1",
+    "MKL_NUM_THREADS": "1",
+    "NUMBA_NUM_THREADS": "1",
+    "GOMP_SPINCOUNT": "20000",
+    "MPLBACKEND": "Agg",
+    "PYTHONHASHSEED": "0",
+}
 
 
 @dataclass(frozen=True)
@@ -52,9 +59,13 @@ class Workshop:
         environment.pop("PYTHONPATH", None)
         (home() / "cache").mkdir(mode=0o700, exist_ok=True)
         self.server = subprocess.Popen(
-            [sys.executable, str(SERVER)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=environment,
+            [sys.executable, str(SERVER)],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+            env=environment,
             cwd=self.folder,
-        )  # fmt: skip
+        )
 
     def ask(self, one: Defect, method: str, checks: tuple[str, ...], keep: bool = False) -> Asked:
         """Plant a defect and ask the checks. With `keep` the Results go to the folder of those of the sound package."""
@@ -62,9 +73,19 @@ class Workshop:
         answers.unlink(missing_ok=True)
         shutil.rmtree(work, ignore_errors=True)
         work.mkdir()
-        request = {"copy": str(self.copy), "entry": ENTRY, "answers": str(answers), "log": str(self.folder / "log"),
-                   "seconds": FIRST if keep else SECONDS, "megabytes": MEGABYTES, "method": method, "checks": list(checks), "keep": keep,
-                   "sound": str(home() / "sound"), "work": str(work)}  # fmt: skip
+        request = {
+            "copy": str(self.copy),
+            "entry": ENTRY,
+            "answers": str(answers),
+            "log": str(self.folder / "log"),
+            "seconds": FIRST if keep else SECONDS,
+            "megabytes": MEGABYTES,
+            "method": method,
+            "checks": list(checks),
+            "keep": keep,
+            "sound": str(home() / "sound"),
+            "work": str(work),
+        }
         with Planted(self.copy, one):
             assert self.server.stdin is not None
             assert self.server.stdout is not None
@@ -103,8 +124,10 @@ def workshop() -> Workshop:
 
 def warmed(method: str, checks: tuple[str, ...]) -> None:
     """Run the checks once without a defect, by one process alone, so that Results and kernels are there for all."""
-    done = home() / f"sound-{method}-{len(checks)}"
-    with (home() / "lock").open("w") as handle:
+    done = home() / f"sound-{examined()}-{method}-{len(checks)}"
+    if done.exists():
+        return
+    with done.with_suffix(".lock").open("w") as handle:
         fcntl.flock(handle, fcntl.LOCK_EX)
         if not done.exists():
             asked = workshop().ask(defects()[NONE], method, checks, keep=True)

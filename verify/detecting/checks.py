@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from mpm_verify.cases.harness.analysis import Analysis, analyse
-from mpm_verify.cases.harness.build import Asked, union
+from mpm_verify.cases.harness.build import Asked, make, union
 from mpm_verify.cases.harness.contract import case_named
 from mpm_verify.cases.harness.runner import check_result
 from mpm_verify.cases.harness.store import Store
@@ -21,7 +21,13 @@ from mpm_verify.verify.detecting import known, rule, stored
 PASS = str(Outcome.PASS)
 Answer = tuple[str, str]
 SOILS = ("mohr_coulomb", "drucker_prager", "ubcsand", "hypoelastic", "linear_elastic")
-SMALL: Mapping[str, tuple[Any, ...]] = {"cells": (3,), "ppc": (4,), "aspect": (2.0,), "channel": (6.0,), "duration": (0.3,)}
+SMALL: Mapping[str, tuple[Any, ...]] = {
+    "cells": (3,),
+    "ppc": (4,),
+    "aspect": (2.0,),
+    "channel": (6.0,),
+    "duration": (0.3,),
+}
 
 
 @dataclass(frozen=True)
@@ -32,7 +38,6 @@ class Subject:
     sound: Path
     work: Path
     keep: bool
-
 
 
 def study(subject: Subject, name: str, *asked: Asked, finish: int | None = None) -> tuple[Any, Any, Analysis]:
@@ -95,10 +100,9 @@ def material(subject: Subject) -> Answer:
 
 def objectivity(subject: Subject) -> Answer:
     """Rates and negative controls along prescribed motions."""
-    made = Asked("objectivity", {"part": ("kinematic",)})
     case = case_named("objectivity")
-    run = case.Run(part="kinematic")
-    store = Store((subject.sound if subject.keep else subject.work) / "objectivity", made.case)
+    run = make(case, {"part": "kinematic"})
+    store = Store((subject.sound if subject.keep else subject.work) / "objectivity", case.name)
     store.runs.mkdir(parents=True, exist_ok=True)
     taken(subject.sound / "objectivity" / "runs", store.runs, run.digest)
     result = store.get(run.digest)
@@ -114,7 +118,9 @@ def column(name: str, **more: tuple[Any, ...]) -> Callable[[Subject], Answer]:
 
     def ask(subject: Subject) -> Answer:
         limits = {"limit": (0.5,)} if subject.method.startswith("cpdi") else {}
-        return judged(subject, name, Asked("column", {"method": (subject.method,), **SMALL, **limits, **more}), finish=0)
+        return judged(
+            subject, name, Asked("column", {"method": (subject.method,), **SMALL, **limits, **more}), finish=0
+        )
 
     return ask
 
@@ -140,4 +146,3 @@ CHECKS: Mapping[str, Callable[[Subject], Answer]] = {
     "numbers": lambda s: stored.numbers(s.work),
 }
 QUICK = ("axis_aligned", "clamped_shear", "exact")
-

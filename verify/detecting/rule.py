@@ -19,7 +19,9 @@ Answer = tuple[str, str]
 Law = Callable[[float], float]
 
 
-def ruled(law: Law, cells: Sequence[int] = CELLS, half: float | None = 1.01, floor: float = 0.0, **more: object) -> Verdict:
+def ruled(
+    law: Law, cells: Sequence[int] = CELLS, half: float | None = 1.01, floor: float = 0.0, **more: object
+) -> Verdict:
     """Verdict on errors that follow a law; `half` times the finest is the error with half the time step."""
     levels = [Level(1 / n, (law(1 / n),)) for n in cells]
     halved = None if half is None else half * levels[-1].errors[0]
@@ -53,7 +55,10 @@ def verdicts() -> list[tuple[str, bool]]:
         ("order 1.5 fails", ruled(lambda h: h**1.5).outcome is FAIL),
         ("order 1.7 is no pass", ruled(lambda h: h**1.7, LONG).outcome is not PASS),
         ("order 2.6 is open", ruled(lambda h: h**2.6).outcome is OPEN),
-        ("a falling order is no pass", ruled(lambda h: h ** (2 - 0.06 * np.log2(1 / (8 * h))), LONG).outcome is not PASS),
+        (
+            "a falling order is no pass",
+            ruled(lambda h: h ** (2 - 0.06 * np.log2(1 / (8 * h))), LONG).outcome is not PASS,
+        ),
         ("a leak is no pass", ruled(lambda h: h**2 + 0.02 * h, LONG).outcome is not PASS),
         ("a floor is no pass", ruled(lambda h: h**2 + 5e-5, LONG).outcome is not PASS),
         ("a leak of most of the error fails", ruled(lambda h: h**2 + 0.4 * h, LONG).outcome is FAIL),
@@ -72,9 +77,12 @@ def verdicts() -> list[tuple[str, bool]]:
         ("the recorded error passes", ruled(quadratic, recorded=near(e), within=0.01).outcome is PASS),
         ("2 % above the recorded error", ruled(quadratic, recorded=near(e / 1.02), within=0.01).outcome is FAIL),
         ("2 % below the recorded error", ruled(quadratic, recorded=near(e / 0.98), within=0.01).outcome is FAIL),
-        ("four times what was recorded elsewhere",
-         ruled(quadratic, recorded=(Recorded(1 / 20, quadratic(1 / 20) / 4, quadratic(1 / 20) / 4),)).outcome is FAIL),
-    ]  # fmt: skip
+        (
+            "four times what was recorded elsewhere",
+            ruled(quadratic, recorded=(Recorded(1 / 20, quadratic(1 / 20) / 4, quadratic(1 / 20) / 4),)).outcome
+            is FAIL,
+        ),
+    ]
 
 
 def statistics() -> list[tuple[str, bool]]:
@@ -108,9 +116,11 @@ def checked() -> list[tuple[str, bool]]:
         ("relative", outcome(101.0, 100.0, "relative", 0.02) is PASS and outcome(0.01, 0.02, "relative", 0.1) is FAIL),
         ("absolute", outcome(1.01, 1.0, "absolute", 0.02) is PASS and outcome(1.03, 1.0, "absolute", 0.02) is FAIL),
         ("not a number", outcome(nan, 1.0, "at_most") is Outcome.ERROR),
-        ("exit codes", {str(key): code for key, code in EXIT.items()} ==
-         {"PASS": 0, "FAIL": 1, "INCONCLUSIVE": 3, "ERROR": 4}),
-    ]  # fmt: skip
+        (
+            "exit codes",
+            {str(key): code for key, code in EXIT.items()} == {"PASS": 0, "FAIL": 1, "INCONCLUSIVE": 3, "ERROR": 4},
+        ),
+    ]
 
 
 def ask() -> Answer:

@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from itertools import pairwise
 from math import log
 from pathlib import Path
 from typing import Any
@@ -68,17 +69,23 @@ def store(work: Path) -> Answer:
     failed = replace(result, status="failed", errors={})
     theirs = replace(run, solver="true {case} {out}", solver_version="1")
     sources = identity.sources(run, run.plugins)
-    return first([
-        ("what is put comes out", same), ("arrays before the Result", order == [".npz", ".json"]),
-        ("a cut Result is refused", cut), ("another format is refused", other), ("a missing one", kept.get("0") is None),
-        ("a second process is refused", locked),
-        ("a run without a Result is done", to_be_done(run, None)), ("one with a Result is not", not to_be_done(run, result)),
-        ("one of ours that failed is not", not to_be_done(run, failed)),
-        ("one of somebody else's is", to_be_done(theirs, failed)),
-        ("plug-ins count", sources != identity.sources(run, {})),
-        ("sources count", identity.digest(run, {}, "a") != identity.digest(run, {}, "b")),
-        ("parameters count", run.digest != replace(run, cells=9).digest),
-    ])  # fmt: skip
+    return first(
+        [
+            ("what is put comes out", same),
+            ("arrays before the Result", order == [".npz", ".json"]),
+            ("a cut Result is refused", cut),
+            ("another format is refused", other),
+            ("a missing one", kept.get("0") is None),
+            ("a second process is refused", locked),
+            ("a run without a Result is done", to_be_done(run, None)),
+            ("one with a Result is not", not to_be_done(run, result)),
+            ("one of ours that failed is not", not to_be_done(run, failed)),
+            ("one of somebody else's is", to_be_done(theirs, failed)),
+            ("plug-ins count", sources != identity.sources(run, {})),
+            ("sources count", identity.digest(run, {}, "a") != identity.digest(run, {}, "b")),
+            ("parameters count", run.digest != replace(run, cells=9).digest),
+        ]
+    )
 
 
 def recorded(stress: str = "usl") -> dict[int, dict[str, float]]:
@@ -112,11 +119,13 @@ def judged(work: Path) -> list[tuple[str, bool]]:
     return [
         ("recorded errors pass", studied(study, keep).outcome is Outcome.PASS),
         ("the finest cells have half the time step", [run.cells for run in study.runs if run.courant == 0.2] == [32]),
-        ("u 2 % high", times("u", 1.02).exit_code == 1), ("u 2 % low", times("u", 0.98).exit_code == 1),
-        ("v a half high", times("v", 1.5).exit_code == 1), ("sigma a half low", times("sigma", 0.5).exit_code == 1),
+        ("u 2 % high", times("u", 1.02).exit_code == 1),
+        ("u 2 % low", times("u", 0.98).exit_code == 1),
+        ("v a half high", times("v", 1.5).exit_code == 1),
+        ("sigma a half low", times("sigma", 0.5).exit_code == 1),
         ("F 2 % high", times("F", 1.02).exit_code == 1),
         ("an error that depends on the time step", coupled is ReasonCode.TIME_STEP_COUPLED),
-    ]  # fmt: skip
+    ]
 
 
 def numbers(work: Path) -> Answer:
@@ -134,20 +143,23 @@ def numbers(work: Path) -> Answer:
     done = judge_table(file, 1.0, out=work / "table")
     record = done.record
     row = (told := json.loads(document(record, None, {})))["verdicts"][0]
-    orders = [log(a / b, 2) for a, b in zip(errors, errors[1:], strict=False)]
+    orders = [log(a / b, 2) for a, b in pairwise(errors)]
     levels = plain.levels(record, record.findings[0])
     write_junit(work / "junit.xml", record)
     junit = (work / "junit.xml").read_text()
     fine = judge_table(file, 2.0, out=work / "fine")
-    return first([
-        *judged(work),
-        ("outcome", done.outcome == told["outcome"] == row["verdict"] != "PASS"),
-        ("exit code", told["exit_code"] == done.exit_code != 0),
-        ("expected", row["expected"] == 1.0), ("observed", min(orders) < row["observed"] < max(orders)),
-        ("local orders", np.allclose(row["local_orders"], orders, atol=1e-9)),
-        ("errors of the table", [one["error"] for one in levels] == list(errors)),
-        ("orders of the table", np.allclose([one["order"] for one in levels[1:]], orders, atol=1e-9)),
-        ("runs", [run["errors"]["error"]["error"] for run in told["runs"]][:4] == list(errors)[:4]),
-        ("JUnit", "<failure" in junit or "<skipped" in junit),
-        ("a second expectation passes", fine.outcome == "PASS" and fine.exit_code == 0),
-    ])  # fmt: skip
+    return first(
+        [
+            *judged(work),
+            ("outcome", done.outcome == told["outcome"] == row["verdict"] != "PASS"),
+            ("exit code", told["exit_code"] == done.exit_code != 0),
+            ("expected", row["expected"] == 1.0),
+            ("observed", min(orders) < row["observed"] < max(orders)),
+            ("local orders", np.allclose(row["local_orders"], orders, atol=1e-9)),
+            ("errors of the table", [one["error"] for one in levels] == list(errors)),
+            ("orders of the table", np.allclose([one["order"] for one in levels[1:]], orders, atol=1e-9)),
+            ("runs", [run["errors"]["error"]["error"] for run in told["runs"]][:4] == list(errors)[:4]),
+            ("JUnit", "<failure" in junit or "<skipped" in junit),
+            ("a second expectation passes", fine.outcome == "PASS" and fine.exit_code == 0),
+        ]
+    )
