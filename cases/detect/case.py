@@ -1,4 +1,4 @@
-"""What the checks of this package notice: defects planted one at a time in a copy, and placebos that change nothing.
+"""Campaign: defects planted one at a time in a copy, placebos that change nothing, and which of them checks notice.
 
 Each defect is a change of one file (cases/detect/defects), each copy is asked in a process of its own, and a crash or a
 hang is a catch. Noticed is what any check answers otherwise than for the sound package.

@@ -5,6 +5,7 @@ doi:10.2172/759450): `order` changes the order of accuracy or a number of the so
 input or states that are not usual, `judge` what judges and reports, `efficiency` and `formal` no number at all.
 """
 
+import re
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -29,7 +30,7 @@ class Defect:
     file
         Path below the package, such as `solver/step.py`.
     old, new
-        Text of the file, and what it is replaced by, once; `at` counts the places where it stands.
+        Text of the file, and what it is replaced by, once; `at` counts where it stands before.
     kind
         One of KINDS.
     by
@@ -69,9 +70,8 @@ def defects() -> Mapping[str, Defect]:
 
 def replaced(text: str, one: Defect) -> str:
     """Text of a file with the defect in it. Raises ValueError where the old text does not stand there."""
-    start = -1
-    for _ in range(one.at + 1):
-        start = text.find(one.old, start + 1)
-        if start < 0:
-            raise ValueError(f"{one.name}: {one.file} does not hold its old text, place {one.at}")
+    starts = [found.start() for found in re.finditer(f"(?={re.escape(one.old)})", text)]
+    if len(starts) <= one.at:
+        raise ValueError(f"{one.name}: {one.file} does not hold its old text {one.at + 1} times")
+    start = starts[one.at]
     return text[:start] + one.new + text[start + len(one.old) :]

@@ -12,6 +12,7 @@ What stands in docstrings, annotations, raised errors, decorators and default va
 """
 
 import ast
+import re
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
@@ -86,10 +87,9 @@ def _mutants(file: str, text: str) -> tuple[Defect, ...]:
         old = text[start:end]
         if new == old:
             continue
-        place = text[:start].count(old) if old else 0
-        place = sum(1 for k in range(start) if text.startswith(old, k))
+        before = len(re.findall(f"(?={re.escape(old)})", text[: start + len(old) - 1]))
         kind = "judge" if file.startswith(("cases/judging", "cases/harness", "cases/mms/norms")) else "order"
-        made.append((start, Defect("", file, old, new, kind, operator, methods=(method,) if method else (), at=place)))
+        made.append((start, Defect("", file, old, new, kind, operator, methods=(method,) if method else (), at=before)))
     made.sort(key=lambda pair: pair[0])
     return tuple(replace(one, name=f"mutant:{file}:{number}") for number, (_, one) in enumerate(made))
 

@@ -13,18 +13,8 @@ from mpm_verify.solver.plugins import METHODS
 
 Sets = Literal["full", "quick"]
 ORDERS, EXACT = ("axis_aligned", "clamped_shear"), ("exact",)
-OTHERS = (
-    "derivation",
-    "material",
-    "objectivity",
-    "wave_bar",
-    "column",
-    "smoothing",
-    "norms",
-    "rule",
-    "store",
-    "numbers",
-)
+JUDGES = ("norms", "rule", "store", "numbers")
+OTHERS = (*JUDGES, "derivation", "wave_bar", "column", "smoothing", "objectivity", "material")
 CHECKS = {"full": (*ORDERS, *EXACT, *OTHERS), "quick": (*ORDERS, *EXACT, "rule", "norms")}
 USUAL = "cpdi"
 EACH = 7  # of the defects in a quick campaign
@@ -80,6 +70,14 @@ class Result(ResultRecord[Run]):
     run: Run
     outcomes: dict[str, str] = field(default_factory=dict)
     evidence: dict[str, str] = field(default_factory=dict)
+
+
+def asked(run: "Run") -> tuple[str, ...]:
+    """Checks that a run is asked: of a mistake in what judges those of the judge, as it changes nothing computed."""
+    checks = CHECKS[run.checks]
+    return (
+        tuple(check for check in checks if check in (*ORDERS, *JUDGES)) if one(run.defect).kind == "judge" else checks
+    )
 
 
 def mixed(names: Iterable[str]) -> tuple[str, ...]:

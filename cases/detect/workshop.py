@@ -17,7 +17,7 @@ from mpm_verify.cases.detect.plant import Planted, copied, examined, home
 
 SERVER = Path(__file__).with_name("server.py")
 ENTRY = "mpm_verify.verify.detecting.child"
-SECONDS, MEGABYTES = 60, 6000  # processor time and room of a child: what recompiles most takes 30 s and 1500 MB
+SECONDS, MEGABYTES = 150, 6000  # processor time and room of a child: what recompiles most takes 30 s and 1500 MB
 FIRST = 600  # seconds of the first child, which compiles and runs everything
 ALONE = {
     "OMP_NUM_THREADS": "1",

@@ -33,7 +33,7 @@ def quoted() -> str:
 
 
 def quote(found: Certificate) -> str:
-    """What a campaign noticed, what not, and when: `Checks like these noticed 146 of 150 planted mistakes ...`."""
+    """Sentence on a campaign, what it noticed and when: `Checks like these noticed 146 of 150 planted mistakes ...`."""
     missed = found.missed[:FEW] + [f"{len(found.missed) - FEW} more"] * (len(found.missed) > FEW)
     rest = f"; not: {', '.join(missed)}" if missed else ""
     state = "" if found.current else ", of an earlier state of the code"
@@ -50,7 +50,7 @@ def name(rate: Rate) -> str:
 
 
 def said(row: Row) -> str:
-    """How a defect was noticed, or why it was not."""
+    """Words for what noticed a defect, or why nothing did."""
     if row.equivalent:
         return f"nothing can see it: {row.equivalent}" + (
             f"; noticed by {', '.join(row.changed)}" if row.changed else ""

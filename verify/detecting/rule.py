@@ -16,14 +16,14 @@ PASS, FAIL, OPEN = Outcome.PASS, Outcome.FAIL, Outcome.INCONCLUSIVE
 CELLS = (8, 12, 16, 24, 32)
 LONG = (8, 16, 32, 64, 128)
 Answer = tuple[str, str]
-Law = Callable[[float], float]
+Errors = Callable[[float], float]
 
 
 def ruled(
-    law: Law, cells: Sequence[int] = CELLS, half: float | None = 1.01, floor: float = 0.0, **more: object
+    error: Errors, cells: Sequence[int] = CELLS, half: float | None = 1.01, floor: float = 0.0, **more: object
 ) -> Verdict:
-    """Verdict on errors that follow a law; `half` times the finest is the error with half the time step."""
-    levels = [Level(1 / n, (law(1 / n),)) for n in cells]
+    """Verdict on errors that follow a function of h; `half` times the finest is the error with half the time step."""
+    levels = [Level(1 / n, (error(1 / n),)) for n in cells]
     halved = None if half is None else half * levels[-1].errors[0]
     return judge(levels, Expectation(2.0, **more), floor=floor, dt_halved=halved)  # type: ignore[arg-type]
 
