@@ -117,7 +117,7 @@ def test_another_change_is_another_run() -> None:
 
 def test_the_certificate_is_quoted_with_what_was_missed() -> None:
     found = certificate.Certificate(
-        "2026-01-02", "0" * 16, "a processor", ["cpdi"], 146, 150, 120, 140, 0, 20, 3, {}, ["a", "b"]
+        "2026-01-02", "0" * 16, "a processor", ["cpdi"], 9, 9, 146, 150, 120, 140, 0, 20, 3, {}, ["a", "b"]
     )
     text = quote(found)
     assert "noticed 146 of 150 planted mistakes (cpdi); not: a, b." in text

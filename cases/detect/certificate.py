@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from mpm_verify.cases.detect.plant import examined
-from mpm_verify.cases.detect.rates import rates, real, rows
+from mpm_verify.cases.detect.rates import QUICKLY, rates, real, rows
 
 FILE = Path(__file__).with_name("certificate.json")
 
@@ -23,10 +23,12 @@ class Certificate:
         Day, digest of what was examined, and the machine.
     methods
         Methods that were examined.
+    done, copies
+        Copies that were asked, of those of the campaign.
     noticed, planted
         Defects that a check noticed, of those that it should.
     quick
-        Those that `mms --quick` and the exactness battery noticed.
+        Those that `mms --quick` and the exactness battery noticed, of what computes.
     failed
         Those noticed with a FAIL.
     alarms, placebos
@@ -43,6 +45,8 @@ class Certificate:
     examined: str
     processor: str
     methods: list[str]
+    done: int
+    copies: int
     noticed: int
     planted: int
     quick: int
@@ -59,8 +63,8 @@ class Certificate:
         return self.examined == examined()
 
 
-def of(results: Sequence[Any], date: str, digest: str, processor: str) -> Certificate:
-    """Certificate of Results. Raises ValueError where nothing was planted."""
+def of(results: Sequence[Any], copies: int, date: str, digest: str, processor: str) -> Certificate:
+    """Certificate of Results of a campaign of so many copies. Raises ValueError where nothing was planted."""
     found = rows(results)
     mine, named = real(found), {one.name: one for one in rates(found)}
     if not mine:
@@ -71,9 +75,11 @@ def of(results: Sequence[Any], date: str, digest: str, processor: str) -> Certif
         digest,
         processor,
         sorted({row.method for row in found}),
+        len(found),
+        copies,
         named["all"].noticed,
         len(mine),
-        named["mms --quick and exact"].noticed,
+        named[QUICKLY].noticed,
         named["as FAIL"].noticed,
         sum(row.noticed() for row in quiet),
         len(quiet),

@@ -53,6 +53,9 @@ class Workshop:
     """A copy of the package and a server of this process."""
 
     def __init__(self) -> None:
+        for left in home().glob("copy-*"):  # of a process that was killed
+            if not Path("/proc", left.name.removeprefix("copy-")).exists():
+                shutil.rmtree(left, ignore_errors=True)
         self.folder = home() / f"copy-{os.getpid()}"
         self.copy = copied(self.folder)
         environment = {**os.environ, **ALONE, "XDG_CACHE_HOME": str(home() / "cache")}

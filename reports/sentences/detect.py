@@ -36,10 +36,11 @@ def quote(found: Certificate) -> str:
     """Sentence on a campaign, what it noticed and when: `Checks like these noticed 146 of 150 planted mistakes ...`."""
     missed = found.missed[:FEW] + [f"{len(found.missed) - FEW} more"] * (len(found.missed) > FEW)
     rest = f"; not: {', '.join(missed)}" if missed else ""
+    part = f" ({found.done} of {found.copies} copies)" if found.done < found.copies else ""
     state = "" if found.current else ", of an earlier state of the code"
     return (
         f"Checks like these noticed {found.noticed} of {found.planted} planted mistakes ({', '.join(found.methods)})"
-        f"{rest}. {found.alarms} of {found.placebos} placebos raised an alarm. Campaign of {found.date}, "
+        f"{rest}. {found.alarms} of {found.placebos} placebos raised an alarm. Campaign of {found.date}{part}, "
         f"examined {found.examined}{state}; verify detect repeats it."
     )
 

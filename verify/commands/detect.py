@@ -113,6 +113,7 @@ def certified(folder: Path, file: Path) -> None:
     record = read(folder)
     made = certificate.of(
         list(record.results.values()),
+        len(record.study.runs),
         datetime.now(UTC).date().isoformat(),
         examined(),
         environment().get("processor", ""),
