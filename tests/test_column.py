@@ -38,7 +38,7 @@ def test_budgets_close(done: Any) -> None:
     result, arrays = done
     assert (result.status, result.failure) == ("finished", None)
     first = float(arrays["curve_potential"][0])
-    assert result.values["unbalanced"] < 2e-3
+    assert result.values["unbalanced"] < 1e-12
     assert result.values["most_momentum_lost"] < 1e-9
     assert result.values["most_mass_lost"] < 1e-13
     assert result.values["misworked"] < 2e-3

@@ -5,8 +5,9 @@ MPM, whose gradients of weights jump where a particle crosses a cell, and CPDI w
 cells by half a diagonal, whose weights change by much in a step. The work of the stress on the strain that particles
 see is then another than that of the forces at the nodes, by 3 % of the energy there is with domains of a cell, and by
 more than all of it without a limit or with classical MPM. Smoothing of rates or stresses alone, through nodes, or by
-F-bar is not asked either: strain and stress are then not smoothed by one projector. FMPM filters what walls give, and
-its momentum is not counted. All these are told, and not judged. How many runs come to rest, the study declares.
+F-bar is not asked either: strain and stress are then not smoothed by one projector. FMPM filters what walls give and
+what moves particles: its momentum is not counted, and its budget is held by a hundredth, all others to round-off. What
+is not asked is told. How many runs come to rest, the study declares.
 """
 
 from collections.abc import Sequence
@@ -19,7 +20,7 @@ from mpm_verify.cases.harness.checks import Check, Way
 from mpm_verify.solver.plugins import METHODS, SMOOTHINGS, TRANSFERS, create, load, split
 
 OVER = "over the initial potential energy"
-BUDGET, DRIFT, BACK = 0.01, 1e-9, 1e-3
+BUDGET, DRIFT, BACK = 0.01, 1e-9, 1e-3  # of a work that is approximate, and of sums that are exact
 MASS, STABLE = 1e-12, 0.95
 LONG = 0.7  # cells, half diagonal of a domain
 
@@ -28,9 +29,12 @@ def checks(study: ColumnStudy, ran: Sequence[FinishedRun]) -> list[Check]:
     """Checks of the runs that came to their end."""
     smooth = [one for one in ran if holds_work(one.run)]
     counted = [one for one in ran if not plugin(TRANSFERS, one.run.transfer).filters_walls]
+    filtered = [one for one in ran if plugin(TRANSFERS, one.run.transfer).filters_walls]
     asked: list[tuple[str, Sequence[FinishedRun], list[float], float, str]] = [
-        (f"energy budget, largest residual {OVER}", ran, [one.values["unbalanced"] for one in ran], BUDGET,
+        (f"energy budget, largest residual {OVER}", counted, [one.values["unbalanced"] for one in counted], DRIFT,
          "sum of terms measured apart"),
+        (f"energy budget with filtered velocities, largest residual {OVER}", filtered,
+         [one.values["unbalanced"] for one in filtered], BUDGET, "sum of terms measured apart"),
         (f"work of the material less that of its forces, {OVER}", smooth, [one.values["misworked"] for one in smooth],
          BUDGET, "virtual work"),
         (f"plastic work, largest fall {OVER}", smooth, [one.values["plastic_falls"] for one in smooth], BACK,

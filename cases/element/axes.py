@@ -25,7 +25,7 @@ class ElementRun(RunRecord):
     test: str = axis("biaxial", f"{', '.join(TEST_NAMES)}, or {PROPERTIES}: tables and limits of the material.",
                      choices=(*TEST_NAMES, PROPERTIES))  # fmt: skip
     stress: float = axis(CONFINED, "Isotropic stress at the start, compression positive, Pa.")
-    steps: int = axis(100, "Strain steps of the coarsest run; the finest has sixteen times as many.")
+    steps: int = axis(100, "Strain steps of the coarsest run; the finest has 16 times as many; from 50 on they settle.")
     path: str = axis("", "CSV file with a strain path: columns exx, eyy and exy, or gxy = 2 exy.")
     units: str = axis("", "Units of the strains in that file: percent or fraction; usual is what its header says.",
                       choices=("percent", "fraction"))  # fmt: skip

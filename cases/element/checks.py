@@ -12,6 +12,10 @@ from mpm_verify.cases.element.curves import columns
 from mpm_verify.cases.element.element import Element
 from mpm_verify.cases.element.paths import TESTS, Followed, follow
 from mpm_verify.cases.harness.checks import Check
+from mpm_verify.mms.constitutive.driver import Subject
+from mpm_verify.mms.constitutive.history import tests as tests_of_memory
+from mpm_verify.mms.constitutive.stress import tests as tests_of_stress
+from mpm_verify.mms.constitutive.tested import Part
 from mpm_verify.solver.material.drucker_prager import DruckerPrager
 from mpm_verify.solver.material.hypoelastic import Hypoelastic
 from mpm_verify.solver.material.mohr_coulomb import MohrCoulomb, slope
@@ -19,6 +23,13 @@ from mpm_verify.solver.material.ubcsand import MEMORY, Ubcsand
 from mpm_verify.solver.state import Floats
 
 TABLE, FORM = "reference table", "closed form"
+GROUPS: dict[str, str] = {
+    Part.STRESS: "Stress to round-off",
+    Part.RATE: "Turned paths, to round-off",
+    Part.HISTORY: "Memory, to round-off",
+    Part.CUT_OFF: "Stress to round-off",
+    Part.TIME_STEP: "Stress to round-off",
+}
 RETURNS = (  # trial stress -> stress: E = 840, nu = 0.3, phi = 31, psi = 1, c = 0, in any unit
     ((-1.0, -3.0, -9.0), (-2.45429513, -3.03647977, -7.66730412), "plane"),
     ((-1.0, -1.2, -9.0), (-2.23265637, -2.23265637, -6.97489685), "edge of the first two"),
@@ -29,8 +40,18 @@ RETURNS = (  # trial stress -> stress: E = 840, nu = 0.3, phi = 31, psi = 1, c =
 
 
 def material_checks(material: Any) -> list[Check]:
-    """Checks of this material; none where nothing is known of it."""
-    return CHECKS[material.name](material) if material.name in CHECKS else []
+    """Checks of this material: what any must keep to round-off, and what is known of this one."""
+    return [*exact(material), *(CHECKS[material.name](material) if material.name in CHECKS else [])]
+
+
+def exact(material: Any) -> list[Check]:
+    """Checks to round-off: F without symmetry and turned, zz, moduli, and what the memory sums."""
+    subject = Subject(material)
+    return [
+        Check(GROUPS[one.points_to], one.name, one.residual, one.bound, "at_most", "round-off")
+        for one in (*tests_of_stress(subject), *tests_of_memory(subject))
+        if not one.reason
+    ]
 
 
 def run(material: Any, name: str, length: float, stress: float, steps: int = 100) -> Followed:

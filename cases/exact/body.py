@@ -7,11 +7,11 @@ and rotation and det F is not 1, and rows of random numbers come from one seed.
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, cached_property
-from math import cos, sin
 from typing import Any
 
 import numpy as np
 
+from mpm_verify.mms.constitutive.driver import random
 from mpm_verify.solver.boundary import Kind, Walls, box, moving
 from mpm_verify.solver.layout import Layout, rectangle
 from mpm_verify.solver.plugins import MATERIALS, METHODS, TRANSFERS, available, create
@@ -24,7 +24,6 @@ CELLS, AROUND = np.array([10, 9]), 3  # cells of a grid, and of its rim around t
 FILLED = np.array([5, 4])  # cells of a grid that the body fills
 PPC, OFFSET = 4, (0.2, -0.15)
 COURANT = 0.3
-SEED = 20221
 FREE: Kind = "free"
 STRAINED = np.array([[1.06, 0.17], [-0.08, 0.97]])  # F at the start: sheared and turned, det F = 1.04
 MIRROR = np.array([[-1.0, 0.0], [0.0, 1.0]])
@@ -118,13 +117,6 @@ def deformed(F: Floats) -> Callable[[Floats], Floats]:
     return lambda X: middle + (X - middle) @ F.T
 
 
-@cache
-def random(*shape: int, seed: int = SEED) -> Floats:
-    """Numbers between -1 and 1, the same at each call; not to be written."""
-    numbers: Floats = np.random.default_rng(seed).uniform(-1.0, 1.0, shape)
-    return numbers
-
-
 def populated(subject: Subject, pieces: Layout, F: Floats) -> Particles:
     """Particles of a layout, deformed uniformly by F (2,2)."""
     p: Particles = subject.basis.populate(pieces, subject.material.rho0, deformed(F))
@@ -160,29 +152,6 @@ def modelled(
 def ruled(rule: Rule) -> Walls:
     """Walls that a rule moves, see solver.boundary.moving."""
     return moving(grid(), rule)
-
-
-def turn(angle: float) -> Floats:
-    """Rotation (2,2) by an angle, counter-clockwise."""
-    return np.array([[cos(angle), -sin(angle)], [sin(angle), cos(angle)]])
-
-
-def tensors(sigma: Floats) -> Floats:
-    """Plane stresses (...,2,2) of sigma xx, yy, zz, xy (...,4)."""
-    xy = sigma[..., 3]
-    full: Floats = np.stack([np.stack([sigma[..., 0], xy], -1), np.stack([xy, sigma[..., 1]], -1)], -2)
-    return full
-
-
-def columns(plane: Floats, zz: Floats) -> Floats:
-    """Stresses xx, yy, zz, xy (...,4) of plane stresses (...,2,2) and zz (...)."""
-    sigma: Floats = np.stack([plane[..., 0, 0], plane[..., 1, 1], zz, plane[..., 0, 1]], -1)
-    return sigma
-
-
-def rotated(sigma: Floats, Q: Floats) -> Floats:
-    """Stress Q sigma Q^T of sigma (...,4) and Q (2,2), a rotation or mirror."""
-    return columns(Q @ tensors(sigma) @ Q.T, sigma[..., 2])
 
 
 def by_id(p: Particles, name: str) -> Floats:

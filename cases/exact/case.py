@@ -11,12 +11,12 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
 
-from mpm_verify.cases.exact.battery import group_of
+from mpm_verify.cases.exact.groups import group_of
 from mpm_verify.cases.exact.run import AXES, QUICK, Result, Run
-from mpm_verify.cases.exact.tested import Tested
 from mpm_verify.cases.harness.checks import Check, Examination, Remark
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.cases.harness.study import Study
+from mpm_verify.mms.constitutive.tested import Tested
 from mpm_verify.solver.plugins import MATERIALS, METHODS, label
 from mpm_verify.solver.plugins import canonical as canonical_name
 

@@ -6,9 +6,11 @@ from math import pi
 
 import numpy as np
 
-from mpm_verify.cases.exact.body import DX, Subject, Variant, by_id, layout, modelled, populated, variants
-from mpm_verify.cases.exact.tested import Part, Tested, attempt, bound, off
+from mpm_verify.cases.exact.body import DX, FILLED, Subject, Variant, by_id, layout, modelled, populated, variants
+from mpm_verify.mms.constitutive.driver import random
+from mpm_verify.mms.constitutive.tested import Part, Reason, Tested, attempt, bound, not_asked, off
 from mpm_verify.solver.damping import Damping
+from mpm_verify.solver.energy_budget import Budget, kinetic, residual
 from mpm_verify.solver.state import Floats, Particles
 from mpm_verify.solver.step import Model, advance
 
@@ -32,15 +34,34 @@ def tests(subject: Subject) -> list[Tested]:
     asked: list[tuple[str, Variant, Damping | None, Force, Floats]] = [
         ("fall", variant, None, growing, thrown) for variant in variants()
     ]
+    found = [one for v in variants() for one in attempt(f"budget {v}", Part.BUDGET, partial(budget, subject, v))]
     for kind in ("local", "objective"):
         damping = Damping(ALPHA, kind)
         asked.append((f"throw_damped_{kind}", Variant(), damping, growing, thrown))
         asked.append((f"oscillator_{kind}", Variant(), damping, spring, 0 * thrown))
-    return [
-        found
-        for one in asked
-        for found in attempt(f"{one[0]} {one[1]}", PART[one[2] is None], partial(rigid, subject, *one))
-    ]
+    for one in asked:
+        found += attempt(f"{one[0]} {one[1]}", PART[one[2] is None], partial(rigid, subject, *one))
+    return found
+
+
+def budget(subject: Subject, variant: Variant) -> Tested:
+    """Energies of a body between walls, struck, under gravity and damped: their sum over the kinetic energy."""
+    name, rate, transfer = f"budget {variant}", subject.material.rate, variant.scheme.transfer
+    if rate is None or variant.stress != "usl" or transfer.filters_walls:
+        return not_asked(name, Part.BUDGET, Reason.NO_RATE_FORM if rate is None else Reason.BUDGET)
+    p = populated(subject, layout(filled=True), np.eye(2))
+    p.v[:] = 0.02 * subject.speed * random(len(p), 2)
+    g = np.array([0.0, -0.01 * subject.speed**2 / DX])
+    model = modelled(subject, p, variant, ("roller", "free", "fixed", "free"), FILLED, damping=Damping(ALPHA))
+    known = Budget(g, kinetic(p))
+    model.watch(known)
+    rows = [known.terms(model)]
+    for _ in range(STEPS):
+        advance(model, lambda particles, t: np.copyto(particles.b, np.broadcast_to(g, particles.b.shape)))
+        rows.append(known.terms(model))
+    scale = max(map(abs, rows[0].values()))
+    worst = max(off(residual(row, rows[0]), 0.0, scale) for row in rows)
+    return Tested(name, worst, bound(2 * STEPS * subject.support), Part.BUDGET)
 
 
 def rigid(subject: Subject, name: str, variant: Variant, damping: Damping | None, force: Force, v0: Floats) -> Tested:

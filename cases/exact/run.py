@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from mpm_verify.cases.exact.tested import Tested
 from mpm_verify.cases.harness.study import ResultRecord, RunRecord, axis
+from mpm_verify.mms.constitutive.tested import Tested
 from mpm_verify.solver.plugins import MATERIALS, METHODS, available
 
 AXES = {"method": tuple(available(METHODS)), "material": tuple(available(MATERIALS))}

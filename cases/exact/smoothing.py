@@ -4,7 +4,6 @@ from functools import partial
 
 import numpy as np
 
-from mpm_verify.cases.exact.battery import GROUPS
 from mpm_verify.cases.exact.body import (
     DX,
     STRAINED,
@@ -13,12 +12,13 @@ from mpm_verify.cases.exact.body import (
     layout,
     modelled,
     populated,
-    random,
     rest,
     ruled,
     shaken,
 )
-from mpm_verify.cases.exact.tested import FAILED, Part, Reason, Tested, attempt, bound, not_asked, off
+from mpm_verify.cases.exact.groups import GROUPS
+from mpm_verify.mms.constitutive.driver import random
+from mpm_verify.mms.constitutive.tested import FAILED, Part, Reason, Tested, attempt, bound, not_asked, off
 from mpm_verify.solver.plugins import SMOOTHINGS, available, create
 from mpm_verify.solver.smoothing._base import RATES
 from mpm_verify.solver.state import Floats

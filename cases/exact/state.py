@@ -15,12 +15,12 @@ from mpm_verify.cases.exact.body import (
     layout,
     modelled,
     populated,
-    random,
     rest,
     shaken,
     variants,
 )
-from mpm_verify.cases.exact.tested import Part, Tested, attempt
+from mpm_verify.mms.constitutive.driver import random
+from mpm_verify.mms.constitutive.tested import Part, Tested, attempt
 from mpm_verify.solver.failure import FailureKind, RunFailed
 from mpm_verify.solver.state import Particles
 from mpm_verify.solver.step import Model, advance, check_time_step

@@ -17,14 +17,14 @@ from mpm_verify.cases.exact.body import (
     layout,
     modelled,
     populated,
-    random,
     rest,
     ruled,
     shaken,
     variants,
 )  # fmt: skip
 from mpm_verify.cases.exact.dense import Dense, Sigma
-from mpm_verify.cases.exact.tested import Pairs, Part, Reason, Tested, attempt, bound, farthest, not_asked, off
+from mpm_verify.mms.constitutive.driver import random
+from mpm_verify.mms.constitutive.tested import Pairs, Part, Reason, Tested, attempt, bound, farthest, not_asked, off
 from mpm_verify.solver.state import Floats
 from mpm_verify.solver.step import Model, advance
 from mpm_verify.solver.weights import Basis

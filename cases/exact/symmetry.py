@@ -14,11 +14,11 @@ from mpm_verify.cases.exact.body import (
     by_id,
     layout,
     modelled,
-    rotated,
     shaken,
     variants,
 )  # fmt: skip
-from mpm_verify.cases.exact.tested import Pairs, Part, Reason, Tested, attempt, bound, farthest, not_asked
+from mpm_verify.mms.constitutive.driver import rotated
+from mpm_verify.mms.constitutive.tested import Pairs, Part, Reason, Tested, attempt, bound, farthest, not_asked
 from mpm_verify.solver.boundary import Kind
 from mpm_verify.solver.layout import Layout
 from mpm_verify.solver.state import Floats, Ints, Particles

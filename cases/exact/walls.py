@@ -14,11 +14,11 @@ from mpm_verify.cases.exact.body import (
     layout,
     modelled,
     populated,
-    random,
     rest,
     variants,
 )
-from mpm_verify.cases.exact.tested import Part, Reason, Tested, attempt, bound, not_asked, off
+from mpm_verify.mms.constitutive.driver import random
+from mpm_verify.mms.constitutive.tested import Part, Reason, Tested, attempt, bound, not_asked, off
 from mpm_verify.solver.boundary import Kind
 from mpm_verify.solver.material_model import Material
 from mpm_verify.solver.state import Particles

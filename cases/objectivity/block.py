@@ -15,6 +15,7 @@ from mpm_verify.solver.state import Floats
 
 PRINTED, SMALL, REST = "block of 1 m", "block of 1 cm", "block of 1 m, not turned"
 GROUP = "Figure 2, the CPDI run"
+SETTLED = 8  # cells along the block that the bounds are made for; with fewer the grid's error grows as h^2
 Results = Mapping[str, ResultRecord[Block]]
 
 
@@ -76,21 +77,22 @@ def checks(block: Block, results: Results) -> list[Check]:
     if ended:
         return [Check(GROUP, name, np.nan, 0.0, "absolute", "", failure=why) for name, why in ended.items()]
     small, large, rest = (results[name].values for name in (SMALL, PRINTED, REST))
-    K0 = block.nu / (1 - block.nu)
+    K0, grid = block.nu / (1 - block.nu), max(1.0, (SETTLED / block.cells) ** 2)
+    near, far, low = 0.005 * grid, 0.01 * grid, 0.003 * grid
     static, closed = "static equilibrium", "closed form, stress turned with the block"
     return [
-        Check(GROUP, "1 cm: vertical stress at the end of the ramp", small["yy_ramp"], -1.0, "absolute", static, 0.005),
-        Check(GROUP, "1 cm: horizontal stress there", small["xx_ramp"], -K0, "absolute", static, 0.005),
-        Check(GROUP, "1 cm: largest distance in the turn", small["miss"], 0.01, "at_most", closed),
-        Check(GROUP, "1 cm: largest shear stress", small["peak"], (1 - K0) / 2, "absolute", closed, 0.005),
-        Check(GROUP, "1 cm: horizontal stress after 90 degrees", small["xx_end"], -1.0, "absolute", closed, 0.01),
-        Check(GROUP, "1 cm: vertical stress after 90 degrees", small["yy_end"], -K0, "absolute", closed, 0.01),
-        Check(GROUP, "1 cm: co-rotated shear stress, rms over time", small["own_xy"], 0.005, "at_most",
+        Check(GROUP, "1 cm: vertical stress at the end of the ramp", small["yy_ramp"], -1.0, "absolute", static, near),
+        Check(GROUP, "1 cm: horizontal stress there", small["xx_ramp"], -K0, "absolute", static, near),
+        Check(GROUP, "1 cm: largest distance in the turn", small["miss"], far, "at_most", closed),
+        Check(GROUP, "1 cm: largest shear stress", small["peak"], (1 - K0) / 2, "absolute", closed, near),
+        Check(GROUP, "1 cm: horizontal stress after 90 degrees", small["xx_end"], -1.0, "absolute", closed, far),
+        Check(GROUP, "1 cm: vertical stress after 90 degrees", small["yy_end"], -K0, "absolute", closed, far),
+        Check(GROUP, "1 cm: co-rotated shear stress, rms over time", small["own_xy"], near, "at_most",
               "zero by symmetry"),
-        Check(GROUP, "1 m: vertical stress in the ramp, rms distance", large["ripple"], 0.003, "at_most",
+        Check(GROUP, "1 m: vertical stress in the ramp, rms distance", large["ripple"], low, "at_most",
               "linear waves in a column under growing gravity"),
         Check(GROUP, "1 m: inertial fraction of the mean vertical stress", large["own_yy"], rest["own_yy"], "absolute",
-              "the same box at rest, with inertial forces", 0.003),
+              "the same box at rest, with inertial forces", low),
         Check(GROUP, "1 m: largest distance in the turn", large["miss"], small["miss"], "at_least",
               "inertia and waves of the large block alone"),
     ]  # fmt: skip

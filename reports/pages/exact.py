@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from mpm_verify.cases.exact.case import ExactRemark
-from mpm_verify.cases.exact.tested import Part
 from mpm_verify.cases.harness.checks import Examination
+from mpm_verify.mms.constitutive.tested import Part
 from mpm_verify.reports.components.examined import Section
 from mpm_verify.reports.components.examined_study import page as examined_page
 from mpm_verify.reports.components.page import Add

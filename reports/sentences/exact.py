@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from mpm_verify.cases.exact.case import ExactRemark as Code
-from mpm_verify.cases.exact.tested import FAILED, Part, Reason
+from mpm_verify.mms.constitutive.tested import FAILED, Part, Reason
 from mpm_verify.reports.sentences.remarks import Words
 
 Numbers = Mapping[str, Any]
@@ -35,6 +35,7 @@ HELD = {
     "throw_damped_objective": "a throw with objective damping",
     "oscillator_local": "an oscillator with the usual local damping",
     "oscillator_objective": "an oscillator with objective damping",
+    "budget": "kinetic and potential energy, work, damping, walls and transfer add up",
     "slide": "a body that slides along rollers keeps its velocity",
     "no_force_free": "no force, no walls: each particle keeps its velocity",
     "no_force_roller": "no force between rollers: each particle keeps its velocity",
@@ -83,6 +84,7 @@ PARTS = {
     Part.CUT_OFF: "the tension cut-off or the apex of the constitutive model",
     Part.SMOOTHING: "solver/smoothing",
     Part.STATE: "something that a step needs and the arrays of the particles do not hold",
+    Part.BUDGET: "what moves, strains or damps the body without being counted, or solver/energy_budget.py",
     Part.TIME_STEP: "check_time_step in solver/model.py, or the wave speed of the constitutive model",
 }
 REASONS = {
@@ -101,6 +103,7 @@ REASONS = {
     Reason.NO_SUMS: "the material keeps no such sum, or its moduli change on the way",
     Reason.OWN_AXES: "the material tells its own axes apart",
     Reason.FILTER: "through nodes and back is a filter, and no projector",
+    Reason.BUDGET: "the budget is that of update-stress-last and of positions that move with the nodes",
     Reason.OTHER_RATE: "smoothing does not take this rate",
 }
 

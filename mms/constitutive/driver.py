@@ -2,12 +2,33 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
+from math import cos, sin
 from typing import Any
 
 import numpy as np
 
-from mpm_verify.cases.exact.tested import off
+from mpm_verify.mms.constitutive.tested import off
 from mpm_verify.solver.state import Floats, Particles
+
+SEED = 20221
+
+
+@dataclass(frozen=True)
+class Subject:
+    """Constitutive model that is tested, and the scale of its stresses."""
+
+    material: Any
+
+    @property
+    def stress(self) -> float:
+        """Scale of stresses: rho0 c^2."""
+        return float(self.material.rho0 * self.material.wave_speed() ** 2)
+
+    def stiffness(self, mean: float) -> float:
+        """Shear modulus at a mean stress, or what a Poisson's ratio of a quarter makes of rho0 c^2."""
+        m = self.material
+        return float(m.moduli(mean)[0] if m.moduli else getattr(m, "mu", self.stress / 3))
 
 
 @dataclass(frozen=True)
@@ -86,3 +107,33 @@ def circle(sigma: Floats) -> tuple[Floats, Floats]:
     s = -(sigma[:, 0] + sigma[:, 1]) / 2
     t: Floats = np.hypot((sigma[:, 0] - sigma[:, 1]) / 2, sigma[:, 3])
     return s, t
+
+
+@cache
+def random(*shape: int, seed: int = SEED) -> Floats:
+    """Numbers between -1 and 1, the same at each call; not to be written."""
+    numbers: Floats = np.random.default_rng(seed).uniform(-1.0, 1.0, shape)
+    return numbers
+
+
+def turn(angle: float) -> Floats:
+    """Rotation (2,2) by an angle, counter-clockwise."""
+    return np.array([[cos(angle), -sin(angle)], [sin(angle), cos(angle)]])
+
+
+def tensors(sigma: Floats) -> Floats:
+    """Plane stresses (...,2,2) of sigma xx, yy, zz, xy (...,4)."""
+    xy = sigma[..., 3]
+    full: Floats = np.stack([np.stack([sigma[..., 0], xy], -1), np.stack([xy, sigma[..., 1]], -1)], -2)
+    return full
+
+
+def columns(plane: Floats, zz: Floats) -> Floats:
+    """Stresses xx, yy, zz, xy (...,4) of plane stresses (...,2,2) and zz (...)."""
+    sigma: Floats = np.stack([plane[..., 0, 0], plane[..., 1, 1], zz, plane[..., 0, 1]], -1)
+    return sigma
+
+
+def rotated(sigma: Floats, Q: Floats) -> Floats:
+    """Stress Q sigma Q^T of sigma (...,4) and Q (2,2), a rotation or mirror."""
+    return columns(Q @ tensors(sigma) @ Q.T, sigma[..., 2])

@@ -5,9 +5,19 @@ from typing import Any
 
 import numpy as np
 
-from mpm_verify.cases.exact.body import Subject, random, rotated, turn
-from mpm_verify.cases.exact.driver import apart, drive, elastic, straight, strength, symmetric
-from mpm_verify.cases.exact.tested import Part, Reason, Tested, attempt, bound, not_asked, off
+from mpm_verify.mms.constitutive.driver import (
+    Subject,
+    apart,
+    drive,
+    elastic,
+    random,
+    rotated,
+    straight,
+    strength,
+    symmetric,
+    turn,
+)
+from mpm_verify.mms.constitutive.tested import Part, Reason, Tested, attempt, bound, not_asked, off
 from mpm_verify.solver.state import Floats
 
 POINTS = 40  # more than a block

@@ -41,6 +41,7 @@ class Part(StrEnum):
     SMOOTHING = "smoothing"
     STATE = "state"
     TIME_STEP = "time_step"
+    BUDGET = "budget"
 
 
 class Reason(StrEnum):
@@ -61,6 +62,7 @@ class Reason(StrEnum):
     NO_SUMS = "no_sums"  # no memory that is a sum
     OWN_AXES = "own_axes"  # the material tells its axes apart
     FILTER = "filter"  # a filter, applied twice, filters twice
+    BUDGET = "budget"  # the energy budget is that of update-stress-last, and of positions that move with the nodes
     OTHER_RATE = "other_rate"  # smoothing does not take this rate
 
 

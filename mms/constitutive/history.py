@@ -2,14 +2,23 @@
 
 from functools import partial
 from math import inf, radians, tan
-from typing import Any
 
 import numpy as np
 
-from mpm_verify.cases.exact.body import Subject, random
-from mpm_verify.cases.exact.driver import Point, apart, circle, compliance, drive, straight, strength, symmetric
-from mpm_verify.cases.exact.stress import CONFINED, POINTS, confined
-from mpm_verify.cases.exact.tested import FAILED, Part, Reason, Tested, attempt, bound, not_asked, off
+from mpm_verify.mms.constitutive.driver import (
+    Point,
+    Subject,
+    apart,
+    circle,
+    compliance,
+    drive,
+    random,
+    straight,
+    strength,
+    symmetric,
+)
+from mpm_verify.mms.constitutive.stress import CONFINED, POINTS, confined
+from mpm_verify.mms.constitutive.tested import FAILED, Part, Reason, Tested, attempt, bound, not_asked, off
 from mpm_verify.solver.state import Floats
 
 STEPS = 3
@@ -17,34 +26,27 @@ BEFORE = 0.017  # what a sum holds before the path
 
 
 def tests(subject: Subject) -> list[Tested]:
-    """Sums of the plastic strain, strength and tension cut-off."""
+    """Sums of the memory, plastic strain, strength and tension cut-off."""
     found = attempt("history_sums", Part.HISTORY, partial(sums, subject))
     found += attempt("plastic_volume", Part.HISTORY, partial(plastic, subject))
     found += attempt("strength", Part.STRESS, partial(admissible, subject))
     return found + attempt("cut_off", Part.CUT_OFF, partial(cut_off, subject))
 
 
-def sheared(subject: Subject, history: Floats | None = None, steps: int = STEPS) -> Point:
-    """Points under compression after steps of strain far beyond yield, without rotation in each."""
-    material = subject.material
-    size = 2.0 * CONFINED * (subject.stress / stiffness(material, CONFINED * subject.stress))
-    D = symmetric(size * random(POINTS, 3, seed=12))
-    path = [np.broadcast_to(np.eye(2), D.shape).copy()]
-    point = Point(confined(subject), material.initial(confined(subject)) if history is None else history)
-    for _ in range(steps):
-        point = drive(material, [path[0], straight(D)], point.sigma, point.history)
-    return point
-
-
 def strain(subject: Subject) -> Floats:
-    """Strain increments (P,2,2) of each of those steps."""
-    size = 2.0 * CONFINED * (subject.stress / stiffness(subject.material, CONFINED * subject.stress))
+    """Strain increments (P,2,2) far beyond yield."""
+    size = 2.0 * CONFINED * subject.stress / subject.stiffness(CONFINED * subject.stress)
     return symmetric(size * random(POINTS, 3, seed=12))
 
 
-def stiffness(material: Any, mean: float) -> float:
-    """Shear modulus at a mean stress."""
-    return float(material.moduli(mean)[0] if material.moduli else material.mu)
+def sheared(subject: Subject, history: Floats | None = None, steps: int = STEPS) -> Point:
+    """Points under compression after steps of those increments, without rotation in each."""
+    material, D = subject.material, strain(subject)
+    unit = np.broadcast_to(np.eye(2), D.shape)
+    point = Point(confined(subject), material.initial(confined(subject)) if history is None else history)
+    for _ in range(steps):
+        point = drive(material, [unit, straight(D)], point.sigma, point.history)
+    return point
 
 
 def sums(subject: Subject) -> Tested:
@@ -71,7 +73,7 @@ def plastic(subject: Subject) -> list[Tested]:
     """Linear elastic soils: volume and largest shear of the strain that elasticity leaves, against the memory."""
     names, material = ("plastic_volume", "plastic_shear"), subject.material
     names_of = material.memory
-    if "gamma_p" not in names_of or material.moduli is not None:
+    if not {"gamma_p", "eps_v_p"} <= set(names_of) or not hasattr(material, "lam"):
         return [not_asked(name, Part.HISTORY, Reason.NO_SUMS) for name in names]
     if material.rate == "truesdell":
         return [not_asked(name, Part.HISTORY, Reason.STRETCHED) for name in names]
@@ -123,7 +125,7 @@ def cut_off(subject: Subject) -> Tested:
     if material.moduli is not None:
         tension = 0.0  # what has come apart has no stress
     start = confined(subject)
-    size = 20 * (CONFINED * subject.stress + apex) / stiffness(material, CONFINED * subject.stress)
+    size = 20 * (CONFINED * subject.stress + apex) / subject.stiffness(CONFINED * subject.stress)
     D = symmetric(size * np.array([1.0, 1.1, 0.1]) * np.ones((POINTS, 1)))
     point = drive(material, [np.broadcast_to(np.eye(2), D.shape).copy(), straight(D)], start)
     unit = CONFINED * subject.stress + tension

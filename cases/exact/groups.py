@@ -1,0 +1,23 @@
+"""Groups of exact tests by name; light, for whoever shows what is stored."""
+
+# Tests of each group; a group is a file of this folder, or of mms/constitutive, with `tests(subject)`.
+GROUPS = {
+    "weights": ("moments", "positive", "domain_moment", "domain_area", "shared_corners", "sum_mass", "sum_momentum",
+                "sum_force", "virtual_work"),
+    "motion": ("fall", "throw_damped_local", "throw_damped_objective", "oscillator_local", "oscillator_objective",
+               "budget"),
+    "walls": ("slide", "no_force_free", "no_force_roller", "no_force_fixed"),
+    "step": ("step", "affine", "domain_motion"),
+    "symmetry": ("mirror", "quarter_turn"),
+    "stress": ("stress", "stress_turned", "rigid_turn", "turned_path", "increment", "constants",
+               "wave_speed"),
+    "history": ("history_sums", "plastic_volume", "plastic_shear", "strength", "cut_off"),
+    "smoothing": ("smoothing_means", "smoothing_constants", "smoothing_adjoint", "smoothing_twice", "smoothing_parts",
+                  "smoothing_uniform", "smoothing_ratio"),
+    "state": ("restart", "step_limit", "stable_step"),
+}  # fmt: skip
+
+
+def group_of(test: str) -> str:
+    """Group of a test."""
+    return next(group for group, names in GROUPS.items() if test in names)
