@@ -48,10 +48,17 @@ KNOWN = ("flip", "pic", "apic", "fmpm")  # transfers whose formulas stand in den
 
 
 def formulas(subject: Subject, variant: Variant) -> Tested:
-    """Step of random v, F, sigma and b with a wall that moves; x, v, F, sigma and B against full matrices."""
+    """Step of random v, F, sigma and b with a wall that moves, which hands its reaction on, or does not."""
+    pairs = [pair for stops in (False, True) for pair in held_against(subject, variant, stops)]
+    return Tested(f"step {variant}", farthest(pairs), bound(4 * subject.support), Part.STEP)
+
+
+def held_against(subject: Subject, variant: Variant, stops: bool) -> "Pairs":
+    """x, v, F, sigma and B after such a step beside those of full matrices, each with its scale."""
     p = shaken(subject, populated(subject, layout(filled=True), np.eye(2)))
     model = modelled(subject, p, variant, ("roller", "free", "fixed", "free"), FILLED)
     model.walls.value[:], model.walls.rate[:] = 0.02 * subject.speed, 0.1 * subject.speed**2 / DX
+    model.walls.stops = stops
     model.particles.affine_velocity *= 0
     if model.particles.affine_velocity.size:
         model.particles.affine_velocity += 0.01 * subject.speed * DX * random(len(p), 4, seed=4)
@@ -69,7 +76,7 @@ def formulas(subject: Subject, variant: Variant) -> Tested:
     ]
     if dense.affine:
         pairs.append((by_id(q, "affine_velocity").reshape(-1, 2, 2), expected.B[rows], c * DX))
-    return Tested(f"step {variant}", farthest(pairs), bound(4 * subject.support), Part.STEP)
+    return pairs
 
 
 def affine(subject: Subject, variant: Variant) -> list[Tested]:
