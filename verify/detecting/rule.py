@@ -39,6 +39,13 @@ def ended(kind: FailureKind) -> Verdict:
     return judge(levels, Expectation(2.0), floor=0.0, dt_halved=quadratic(1 / 32))
 
 
+def stepwise(*orders: float) -> Verdict:
+    """Verdict on errors with these local orders from level to level, each of half the cells."""
+    errors = np.cumprod([1.0, *(2.0**-order for order in orders)])
+    levels = [Level(2.0 ** -(3 + k), (float(error),)) for k, error in enumerate(errors)]
+    return judge(levels, Expectation(2.0), floor=0.0, dt_halved=1.001 * float(errors[-1]))
+
+
 def near(value: float) -> tuple[Recorded, ...]:
     """Recorded error of the finest cells."""
     return (Recorded(1 / 32, value, value),)
@@ -59,6 +66,8 @@ def verdicts() -> list[tuple[str, bool]]:
             "a falling order is no pass",
             ruled(lambda h: h ** (2 - 0.06 * np.log2(1 / (8 * h))), LONG).outcome is not PASS,
         ),
+        ("a last order below the band is no pass", stepwise(2, 2, 2, 2, 1.9, 1.79).outcome is not PASS),
+        ("one within it passes", stepwise(2, 2, 2, 2, 1.95, 1.9).outcome is PASS),
         ("a leak is no pass", ruled(lambda h: h**2 + 0.02 * h, LONG).outcome is not PASS),
         ("a floor is no pass", ruled(lambda h: h**2 + 5e-5, LONG).outcome is not PASS),
         ("a leak of most of the error fails", ruled(lambda h: h**2 + 0.4 * h, LONG).outcome is FAIL),
