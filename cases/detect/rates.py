@@ -9,6 +9,7 @@ from typing import Any
 
 from mpm_verify.cases.detect.defect import NONE
 from mpm_verify.cases.detect.run import EXACT, ORDERS, one
+from mpm_verify.cases.detect.survivors import equivalent
 
 CONFIDENCE = 0.95
 STOPPED = ("CRASH", "HANG", "ERROR")
@@ -91,7 +92,7 @@ def rows(results: Sequence[Any]) -> list[Row]:
                 planted.by,
                 planted.file,
                 planted.listed,
-                planted.equivalent,
+                equivalent(planted),
                 changed,
                 first,
             )
