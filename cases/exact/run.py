@@ -22,7 +22,7 @@ class Run(RunRecord):
     @property
     def digest(self) -> str:
         """Name of the Result, 16 hex digits: of all transfers and smoothings too, and of the groups of tests."""
-        from mpm_verify.cases.exact.battery import GROUPS
+        from mpm_verify.cases.exact.groups import GROUPS
         from mpm_verify.cases.harness.identity import identity
         from mpm_verify.solver.plugins import SMOOTHINGS, TRANSFERS
         from mpm_verify.solver.source_hash import source_hash

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mpm_verify.cases.exact.body import (
     BLEND,
@@ -91,7 +92,11 @@ def affine(subject: Subject, variant: Variant) -> list[Tested]:
     def acceleration(x: Floats) -> Floats:
         return np.asarray(drag + (x - middle) @ pull.T)
 
-    walls = ruled(lambda x, t, step: (np.ones(x.shape, bool), velocity(x), acceleration(x)))
+    def rule(x: Floats, t: float, step: float) -> tuple[NDArray[np.bool_], Floats, Floats]:
+        """Grid of the first step alone: one that is not moved, or at another time, has another velocity."""
+        return np.ones(x.shape, bool), (1 + t / dt) * (step / dt) * velocity(x), acceleration(x)
+
+    walls = ruled(rule)
     p = shaken(subject, populated(subject, layout(), STRAINED), strain=0.0)
     model = modelled(subject, p, variant, walls)
     x, v, F = (by_id(model.particles, name) for name in ("x", "v", "F"))

@@ -21,6 +21,7 @@ from mpm_verify.verify.detecting import known, rule, stored
 PASS = str(Outcome.PASS)
 Answer = tuple[str, str]
 SOILS = ("mohr_coulomb", "drucker_prager", "ubcsand", "hypoelastic", "linear_elastic")
+COHESIVE = "mohr_coulomb:c=1000,sigma_t=500"  # whose cut-off lies before its apex
 PATHS: Mapping[str, tuple[Any, ...]] = {"test": ("oedometric", "biaxial", "shear_volume", "properties"), "steps": (50,)}
 SMALL: Mapping[str, tuple[Any, ...]] = {
     "cells": (3,),
@@ -85,8 +86,10 @@ def manufactured(solution: str) -> Callable[[Subject], Answer]:
 
 
 def exact(subject: Subject) -> Answer:
-    """Exactness battery of the method with every constitutive model."""
-    return judged(subject, "exact", Asked("exact", {"method": (subject.method,), "material": ("neo_hookean", *SOILS)}))
+    """Exactness battery of the method with every constitutive model, and one with cohesion."""
+    return judged(
+        subject, "exact", Asked("exact", {"method": (subject.method,), "material": ("neo_hookean", *SOILS, COHESIVE)})
+    )
 
 
 def material(subject: Subject) -> Answer:

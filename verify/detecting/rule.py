@@ -67,6 +67,7 @@ def verdicts() -> list[tuple[str, bool]]:
             ruled(lambda h: h ** (2 - 0.06 * np.log2(1 / (8 * h))), LONG).outcome is not PASS,
         ),
         ("a last order below the band is no pass", stepwise(2, 2, 2, 2, 1.9, 1.79).outcome is not PASS),
+        ("a last order above the band is no pass", stepwise(2, 2, 2, 2.05, 2.18, 2.31).outcome is not PASS),
         ("a leak is no pass", ruled(lambda h: h**2 + 0.02 * h, LONG).outcome is not PASS),
         ("a floor is no pass", ruled(lambda h: h**2 + 5e-5, LONG).outcome is not PASS),
         ("a leak of most of the error fails", ruled(lambda h: h**2 + 0.4 * h, LONG).outcome is FAIL),
