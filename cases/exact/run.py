@@ -21,14 +21,11 @@ class Run(RunRecord):
 
     @property
     def digest(self) -> str:
-        """Name of the Result, 16 hex digits: of all transfers and smoothings too, and of the groups of tests."""
-        from mpm_verify.cases.exact.groups import GROUPS
+        """Name of the Result, 16 hex digits: of all transfers and smoothings too."""
         from mpm_verify.cases.harness.identity import identity
         from mpm_verify.solver.plugins import SMOOTHINGS, TRANSFERS
-        from mpm_verify.solver.source_hash import source_hash
 
-        used = [identity(package, name) for package in (TRANSFERS, SMOOTHINGS) for name in available(package)]
-        used += [source_hash(f"mpm_verify.cases.exact.{group}") for group in GROUPS]  # found by name, not imported
+        used = (identity(package, name) for package in (TRANSFERS, SMOOTHINGS) for name in available(package))
         return self.named(" ".join(used))
 
     @property
