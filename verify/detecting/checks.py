@@ -16,12 +16,16 @@ from mpm_verify.cases.harness.contract import case_named
 from mpm_verify.cases.harness.runner import check_result
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.cases.judging.records import Outcome
-from mpm_verify.verify.detecting import known, rule, stored
+from mpm_verify.verify.detecting import known, rule, states, stored
 
 PASS = str(Outcome.PASS)
 Answer = tuple[str, str]
 SOILS = ("mohr_coulomb", "drucker_prager", "ubcsand", "hypoelastic", "linear_elastic")
-COHESIVE = "mohr_coulomb:c=1000,sigma_t=500"  # whose cut-off lies before its apex
+VARIANTS = (
+    "mohr_coulomb:c=1000,sigma_t=500",
+    "mohr_coulomb:c=1000,sigma_t=1e6",
+    "mohr_coulomb:void=1",
+)  # cut-off, apex, void
 PATHS: Mapping[str, tuple[Any, ...]] = {"test": ("oedometric", "biaxial", "shear_volume", "properties"), "steps": (50,)}
 SMALL: Mapping[str, tuple[Any, ...]] = {
     "cells": (3,),
@@ -86,9 +90,9 @@ def manufactured(solution: str) -> Callable[[Subject], Answer]:
 
 
 def exact(subject: Subject) -> Answer:
-    """Exactness battery of the method with every constitutive model, and one with cohesion."""
+    """Exactness battery of the method with every constitutive model, and soils with cohesion and void strain."""
     return judged(
-        subject, "exact", Asked("exact", {"method": (subject.method,), "material": ("neo_hookean", *SOILS, COHESIVE)})
+        subject, "exact", Asked("exact", {"method": (subject.method,), "material": ("neo_hookean", *SOILS, *VARIANTS)})
     )
 
 
@@ -144,6 +148,7 @@ CHECKS: Mapping[str, Callable[[Subject], Answer]] = {
     "wave_bar": wave,
     "column": column("column", damping=(0.05,)),
     "smoothing": column("smoothing", smoothing=("full",), damping=(0.05,), damping_kind=("objective",)),
+    "states": lambda s: states.ask(s.method),
     "norms": lambda s: known.norms(),
     "rule": lambda s: rule.ask(),
     "store": lambda s: stored.store(s.work),

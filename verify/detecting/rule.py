@@ -61,7 +61,7 @@ def verdicts() -> list[tuple[str, bool]]:
         ("order 1 fails", ruled(lambda h: h).outcome is FAIL),
         ("order 1.5 fails", ruled(lambda h: h**1.5).outcome is FAIL),
         ("order 1.7 is no pass", ruled(lambda h: h**1.7, LONG).outcome is not PASS),
-        ("order 2.6 is open", ruled(lambda h: h**2.6).outcome is OPEN),
+        ("order 2.6 is open", ruled(lambda h: h**2.6).reason.code is ReasonCode.ORDER_ABOVE),
         (
             "a falling order is no pass",
             ruled(lambda h: h ** (2 - 0.06 * np.log2(1 / (8 * h))), LONG).outcome is not PASS,
