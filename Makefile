@@ -25,7 +25,7 @@ bench: .venv/.installed
 	$(BIN)/pytest tests/benchmarks --benchmark-only -m "slow or not slow"
 
 adapters: .venv/.installed .venv-adapters/.installed
-	ADAPTERS_PYTHON=$(CURDIR)/.venv-adapters/bin/python $(BIN)/pytest tests/test_adapters.py -m "slow or not slow"
+	ADAPTERS_PYTHON=$(CURDIR)/.venv-adapters/bin/python $(BIN)/pytest tests/test_adapters.py tests/test_foreign_sources.py -m "slow or not slow"
 
 .venv-adapters/.installed: examples/adapters/requirements.txt
 	@echo "setting up .venv-adapters with the public codes of examples/adapters/requirements.txt ..."

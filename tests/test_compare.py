@@ -12,21 +12,23 @@ import numpy as np
 import pytest
 from fixtures_command import Call, caller, one_line
 from fixtures_export import SOLID
+from jsonschema import Draft202012Validator, ValidationError
 
 import mpm_verify as mv
 from mpm_verify.cases.mms.case import canonical
 from mpm_verify.cases.mms.digits.compare import by_value, digits
 from mpm_verify.cases.mms.digits.examine import Examined, examine
 from mpm_verify.cases.mms.digits.make import HEAD, row
-from mpm_verify.cases.mms.digits.records import Against, Agreement, Compared
+from mpm_verify.cases.mms.digits.records import Against, Agreement, Alike, Compared, Parting
 from mpm_verify.cases.mms.digits.reference import Scheme, laid_out, reference, run_frames, schemes
 from mpm_verify.cases.mms.digits.table import CASES, CELLS, Case, agreement, stored, table, telling
 from mpm_verify.cases.mms.external.callables import Case as Given
 from mpm_verify.cases.mms.external.callables import register
 from mpm_verify.cases.mms.run import Run
+from mpm_verify.reports.export.digits import VERSION, document, schema
 from mpm_verify.reports.sentences import digits as words
 from mpm_verify.solver._jit import use_threads
-from mpm_verify.solver.failure import FailureKind
+from mpm_verify.solver.failure import Failure, FailureKind
 
 HAT, MUSL, GIMP = Scheme("mpm"), Scheme("mpm", "musl"), Scheme("gimp")
 FEW = (HAT, MUSL, GIMP)
@@ -390,10 +392,78 @@ def test_the_command(verify: Call, tmp_path: Path) -> None:
     assert (told["exit_code"], told["outcome"], told["report"]) == (1, "parts", None)
     assert [(one["quantity"], one["frame"], one["particle"]) for one in told["partings"]] == [("F", 1, 3)]
     assert told["references"][0]["digits_of_particles"]["u"] == 12.0
+    validate(told)
     code, out, _ = verify("compare", "--solver", program(tmp_path, 0.0), *ONE, "--no-page")
     assert code == 0
     assert "AGREES  The nearest reference is MPM, usl, flip: particles agree to 12.0 digits" in out
     assert not (tmp_path / "results").exists()
+
+
+# ---- the schema of --json
+
+
+@cache
+def validator() -> Draft202012Validator:
+    derived = schema()
+    Draft202012Validator.check_schema(derived)
+    return Draft202012Validator(derived)
+
+
+def validate(told: Any) -> None:
+    validator().validate(told)
+
+
+def told_of(**more: Any) -> Any:
+    """Document of an answer that parts, with a reference that failed, one that is alike, and no number for a size."""
+    part = Parting("F", 1, 2, 3, (0.5, 0.25), 1e-3, float("nan"))
+    against = (Against(HAT, {"u": 1e-3, "F": 2e-3}, {"u": 5.0, "F": 1.0}, {"u": 5.0, "F": 1.0}), Against(MUSL, {}, {}))
+    broken = Failure(FailureKind.INVERTED, 4, 5, (1, 2))
+    found = Compared({"u": 1e-3}, {"u": 12.0, "F": 12.0}, against, True, 2, {GIMP: broken}, (part,), (Alike(GIMP),))
+    return json.loads(json.dumps(document(case(), replace(found, **more))))
+
+
+def test_schema_takes_each_outcome() -> None:
+    few = {"against": (Against(HAT, {"u": 1.0}, {"u": 2.0}),), "limit": {"u": 2.0}, "partings": (), "alike": ()}
+    outcomes = [
+        told_of(), told_of(**few), told_of(**few | {"against": ()}),
+        told_of(**few | {"against": (), "rms": {}, "failure": Failure(FailureKind.INVERTED, 1)}),
+        told_of(**few | {"against": (Against(HAT, {"u": 1.0}, {"u": 9.0}),)}),
+    ]  # fmt: skip
+    assert [one["outcome"] for one in outcomes] == ["parts", "few_digits", "no_reference", "failed", "agrees"]
+    for told in outcomes:
+        validate(told)
+
+
+@pytest.mark.parametrize("path", [(), ("references", 0), ("failed", 0), ("failed", 0, "failure"), ("partings", 0),
+                                  ("alike", 0)])  # fmt: skip
+def test_schema_forbids_unknown_and_missing_keys(path: tuple[str | int, ...]) -> None:
+    told = told_of()
+    item = told
+    for key in path:
+        item = item[key]
+    for key in list(item):
+        value = item.pop(key)
+        with pytest.raises(ValidationError):
+            validate(told)
+        item[key] = value
+    item["another"] = 1
+    with pytest.raises(ValidationError, match="another"):
+        validate(told)
+
+
+@pytest.mark.parametrize(("key", "value"), [
+    ("version", VERSION + 1), ("outcome", "perhaps"), ("exit_code", 2), ("rms", {"pressure": 1.0}),
+    ("rms", {"u": "1e-3"}), ("cells", 1.5), ("references", [{}]), ("sentence", None),
+])  # fmt: skip
+def test_schema_refuses_another_value(key: str, value: Any) -> None:
+    with pytest.raises(ValidationError):
+        validate({**told_of(), key: value})
+
+
+def test_schema_of_a_command(verify: Call) -> None:
+    code, out, err = verify("schema", "compare")
+    assert (code, err) == (0, "")
+    assert json.loads(out) == schema()
 
 
 @pytest.mark.slow

@@ -40,7 +40,7 @@ def digits(found):
 def row(number, study, found):
     """Row of the table of a study."""
     levels = ", ".join(f"{one['cells']}: {short(one['u'])}" for one in found["runs"])
-    verdict = found["verdict"]["verdict"]
+    verdict = ", ".join([found["verdict"]["verdict"], *(f"{name} FAIL" for name in found["refuted"])])
     cells = [str(number), found["version"], study["method"], f"`{study['solution']}`", levels, orders(found["runs"]),
              verdict, digits(found), study["found"]]  # fmt: skip
     return "| " + " | ".join(cells) + " |"
@@ -54,14 +54,23 @@ def table():
     return "\n".join([*lines, *rows])
 
 
-def reasons():
-    """Why a row is INCONCLUSIVE, a line each, without what to run next."""
-    open_ = [(k, stored(name)["verdict"]) for k, name in enumerate(studies(), 1)]
-    return "\n".join(
-        f"- {number}: {verdict['reason'].partition(': run with')[0].partition(': undecided')[0]}"
-        for number, verdict in open_
-        if verdict["verdict"] == "INCONCLUSIVE"
+def reasons(outcome):
+    """Why u of a row has an outcome, a line each, without what to run next."""
+    verdicts = [(k, stored(name)["verdict"]) for k, name in enumerate(studies(), 1)]
+    return listed([(k, "u", one["reason"]) for k, one in verdicts if one["verdict"] == outcome])
+
+
+def refuted():
+    """Why v, F and sigma of a row are FAIL, a line each."""
+    return listed(
+        [(k, name, reason) for k, study in enumerate(studies(), 1) for name, reason in stored(study)["refuted"].items()]
     )
+
+
+def listed(rows):
+    """Lines of rows, quantities and reasons."""
+    lines = [f"- {k}, {name}: {why.partition(': run with')[0].partition(': undecided')[0]}" for k, name, why in rows]
+    return "\n".join(lines) or "- none"
 
 
 def stress(values, mark=" | "):
@@ -103,6 +112,34 @@ def on_a_face():
     return "\n".join(["| particle | `air_drag` | velocity after a step |", "| --- | --- | --- |", *lines])
 
 
+def still():
+    """Table of the experiment on the memory of the grid."""
+    found = stored("sparkl_smallest")
+    names = {"published": "as published", "f32": "mended"}
+    lines = [f"| {names[one['kind']]} | {one['count']} | {one['way']:g} | {'yes' if one['failed'] else 'no'} |"
+             for one in found["moved"]]  # fmt: skip
+    ends = [f"| {names[one['kind']]} | {one['count']} | the process ends | |" for one in found["ended"] if one["ended"]]
+    head = "| sparkl2d 0.4.0 | particles | way in x | failed |\n| --- | --- | --- | --- |"
+    return "\n".join([head, *lines, *ends])
+
+
+def near_a_wall():
+    """Table of the experiment beside a wall."""
+    found = stored("sparkl_smallest")["beside_a_wall"]
+    rows = [["cells from the wall", *(f"{one['beside']:g}" for one in found)], ["---"] * (len(found) + 1),
+            ["velocity", *(f"{one['velocity']:g}" for one in found)]]  # fmt: skip
+    return "\n".join("| " + " | ".join(row) + " |" for row in rows)
+
+
+def stretches():
+    """Table of the experiment on moduli."""
+    found = stored("sparkl_smallest")["stretched"]
+    names = {"corotated": "`CorotatedLinearElasticity`", "neo_hookean": "`NeoHookeanElasticity`",
+             "plane_strain": "plane strain: lam + 2 mu, lam"}  # fmt: skip
+    lines = [f"| {names[key]} | {found[key][0]:g} | {found[key][1]:g} |" for key in names]
+    return "\n".join(["| model | xx | yy |", "| --- | --- | --- |", *lines])
+
+
 def number(value):
     """Number with four digits, or what is none."""
     return "not a number" if value == "nan" else f"{value:.4g}"
@@ -133,7 +170,10 @@ def page():
     template = (HERE / "page.md.in").read_text(encoding="utf-8")
     same = {**stored("kratos_usl_large"), "reference": [one["u"] for one in stored("tiny_symmetric")["runs"]]}
     parts = {
-        "SAME": digits(same), "TABLE": table(), "REASONS": reasons(), "TURNED": turned(), "FACED": faced(),
+        "SAME": digits(same), "TABLE": table(), "OPEN": reasons("INCONCLUSIVE"), "FAILED": reasons("FAIL"),
+        "REFUTED": refuted(), "STILL": still(), "NEAR_A_WALL": near_a_wall(), "STRETCHED": stretches(),
+        "TWO_OF_A_KIND": digits({**stored("sparkl"), "reference": [one["u"] for one in stored("mpm99")["runs"]]}),
+        "TURNED": turned(), "FACED": faced(),
         "ON_A_FACE": on_a_face(),
         "REPEAT": repeat(),
         "LARGE": series("kratos_usl_large"), "LARGE_REFERENCE": series("kratos_usl_large", reference=True),
@@ -143,7 +183,7 @@ def page():
         "FACE_FOUND": stress(stored("kratos_smallest")["beside_a_face"]["rows"][1]["stress"], ", "),
     }  # fmt: skip
     for name in ("kratos_usf", "kratos_central_difference", "kratos_central_difference_b_start", "mpm99",
-                 "mpm99_F_at_0", "newton", "newton_dt_h"):  # fmt: skip
+                 "mpm99_F_at_0", "newton", "newton_dt_h", "sparkl", "sparkl_walls"):  # fmt: skip
         parts[f"ORDERS({name})"] = orders(stored(name)["runs"])
     for key, text in parts.items():
         assert f"<{key}>" in template, key

@@ -1,7 +1,8 @@
 """Studies of public codes: python examples/adapters/study.py [NAME ...] runs those of studies.toml, or some of them.
 
 The adapters run with the interpreter that the environment variable ADAPTERS_PYTHON names, else with this one. What is
-kept of a study is small: its errors over 16 frames, its verdict, and the errors of the solver here in the same frames.
+kept of a study is small: its errors over 16 frames, the verdict on u, what refutes v, F and sigma, and the errors of
+the solver here in the same frames.
 """
 
 import json
@@ -62,8 +63,9 @@ def run(study, python):
     (version,) = {one["told"] for one in stored if one.get("told")}
     rows = [{"cells": row["cells"], **{name: kept(norms["rms"]) for name, norms in (row["errors"] or {}).items()}}
             for row in document["runs"] if row["courant"] == usual]  # fmt: skip
-    verdict = next({key: one[key] for key in ("verdict", "reason")} for one in document["verdicts"])
-    found = {"version": version, "runs": rows, "verdict": verdict}
+    verdicts = {one["quantity"]: {key: one[key] for key in ("verdict", "reason")} for one in document["verdicts"]}
+    refuted = {name: one["reason"] for name, one in verdicts.items() if name != "u" and one["verdict"] == "FAIL"}
+    found = {"version": version, "runs": rows, "verdict": verdicts["u"], "refuted": refuted}
     if "reference" in study:
         found["reference"] = [reference(study, row["cells"]) for row in rows]
     return found
