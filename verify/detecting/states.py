@@ -10,6 +10,7 @@ import numpy as np
 
 from mpm_verify.cases.judging.records import Outcome
 from mpm_verify.solver.boundary import box
+from mpm_verify.solver.damping import Damping
 from mpm_verify.solver.failure import Failure, FailureKind, RunFailed
 from mpm_verify.solver.layout import rectangle
 from mpm_verify.solver.model import Model, Scheme
@@ -114,8 +115,19 @@ def deformation(method: str) -> list[tuple[str, bool]]:
     return found
 
 
+def undamped(method: str) -> list[tuple[str, bool]]:
+    """Whether damping by nothing is no damping, to the bit."""
+    usual, damped = body(method), body(method)
+    damped.damping = Damping(0.0)
+    for model in (usual, damped):
+        model.particles.v[:] = 0.01 * np.sin(model.particles.X)
+        advance(model, no_load)
+        advance(model, no_load)
+    return [("damping of zero is none", bool((usual.particles.v == damped.particles.v).all()))]
+
+
 def ask(method: str) -> Answer:
     """First known answer that is not given."""
-    held = [*failures(method), *orders(method), *deformation(method)]
+    held = [*failures(method), *orders(method), *deformation(method), *undamped(method)]
     wrong = next((name for name, holds in held if not holds), "")
     return (str(Outcome.FAIL), wrong) if wrong else (str(Outcome.PASS), "")
