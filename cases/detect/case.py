@@ -73,7 +73,7 @@ def examine(study: Study[Run], results: Mapping[str, Result], store: Store) -> C
     checks.append(
         Check("Copies", "copies that were asked", float(len(found)), float(len(study.runs)), "at_least", "the campaign")
     )
-    quiet = [row for row in found if row.kind == "placebo"]
+    quiet = [row for row in found if row.kind == "placebo" and row.name != NONE]
     checks.append(
         Check(
             "Placebos",

@@ -7,6 +7,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from mpm_verify.cases.detect.defect import NONE
 from mpm_verify.cases.detect.plant import examined
 from mpm_verify.cases.detect.rates import QUICKLY, rates, real, rows
 
@@ -69,7 +70,7 @@ def of(results: Sequence[Any], copies: int, date: str, digest: str, processor: s
     mine, named = real(found), {one.name: one for one in rates(found)}
     if not mine:
         raise ValueError("nothing was planted: there is nothing to certify")
-    quiet = [row for row in found if row.kind == "placebo"]
+    quiet = [row for row in found if row.kind == "placebo" and row.name != NONE]
     return Certificate(
         date,
         digest,
