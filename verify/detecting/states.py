@@ -1,4 +1,4 @@
-"""Known answers of states that a sound run does not come to: inverted and lost particles, rows in another order.
+"""Known answers of states that no sound run has: particles inverted or beyond the grid, rows in any order.
 
 Also the exponential deformation, which columns use and no manufactured solution does.
 """
@@ -46,7 +46,7 @@ def no_load(particles: Particles, t: float) -> None:
 
 
 def ended(model: Model) -> Failure | None:
-    """What ended the next step."""
+    """Failure that ends the next step, if one does."""
     try:
         advance(model, no_load)
     except RunFailed as end:
