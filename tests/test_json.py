@@ -56,7 +56,7 @@ def test_standard_output_is_one_valid_document(real: tuple[subprocess.CompletedP
     assert run.stderr == ""  # no progress bar either: standard error is no terminal here
     document = parse(run.stdout)
     validate(document)
-    assert document["version"] == VERSION == 3
+    assert document["version"] == VERSION == 4
     assert (folder / document["report"]).is_file()
     assert run.returncode == 3  # three levels are too few for CPDI
 

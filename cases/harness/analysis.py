@@ -6,6 +6,7 @@ from typing import Any
 
 from mpm_verify.cases.harness.checks import Check
 from mpm_verify.cases.harness.contract import case_named
+from mpm_verify.cases.harness.controls import Control, controls
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.cases.harness.study import ResultRecord, Study
 from mpm_verify.cases.harness.verdicts import Finding, findings
@@ -16,11 +17,12 @@ EXIT = {Outcome.PASS: 0, Outcome.FAIL: 1, Outcome.INCONCLUSIVE: 3, Outcome.ERROR
 
 @dataclass(frozen=True)
 class Analysis:
-    """Verdicts and checks: `findings` of the order rule, `checks` of the case, `more` all that it found, or None."""
+    """Verdicts and checks: `findings` of the order rule with their `controls`, `checks` of the case, `more` or None."""
 
     findings: tuple[Finding, ...] = ()
     checks: tuple[Check, ...] = ()
     more: Any = None
+    controls: tuple[Control, ...] = ()
 
     @property
     def outcomes(self) -> list[Outcome]:
@@ -43,4 +45,5 @@ def analyse(study: Study[Any], results: Mapping[str, ResultRecord[Any]], store: 
     case = case_named(study.case)
     more = case.examine(study, results, store) if case.examine else None
     found = tuple(findings(study, results)) if study.plans else ()
-    return Analysis(found, tuple(more.checks) if more else (), more)
+    spoilt = controls(study, results, found, lambda finding: Analysis((finding,)).exit_code == 0)
+    return Analysis(found, tuple(more.checks) if more else (), more, spoilt)

@@ -247,9 +247,11 @@ def named(asked: Asked) -> str:
     case, words = asked.contract, [label(asked.case)]
     values = {key: list(dict.fromkeys(chosen)) for key, chosen in asked.values.items()}
     usual = {item.name: [item.default] for item in fields(case.Run)} | {k: list(v) for k, v in case.axes.items()}
+    quick = {key: list(case.quick[key]) for key in FIRST if asked.quick and key in case.quick}
     for key in (key for key in FIRST if key in usual):
-        chosen = values.pop(key, usual[key])
-        words += map(str, chosen) if chosen != usual[key] or (key == "method" and case.quantities) else ()
+        taken: list[Any] = quick.get(key) or usual[key]
+        chosen = values.pop(key, taken)
+        words += map(str, chosen) if chosen != taken or (key == "method" and case.quantities) else ()
     for item in fields(case.Run):
         if item.metadata.get("whole") and item.name in values:  # a command: the names of its files
             values[item.name] = [re.sub(r"\{\w*\}|[^\s{}]*/", "", text) for text in values[item.name]]

@@ -2,7 +2,8 @@
 
 from math import log
 
-from mpm_verify.cases.judging.quantity import LEVELS, Quantity
+from mpm_verify.cases.judging.fit import LEVELS
+from mpm_verify.cases.judging.quantity import Quantity
 from mpm_verify.cases.judging.records import Reason, ReasonCode, Recorded
 from mpm_verify.solver.failure import FailureKind
 
@@ -56,7 +57,7 @@ def tail(q: Quantity) -> Reason | None:
         q.expectation.order is None
         or len(fit.orders) < LEVELS - 1
         or fit.lowest <= CLEAR * q.floor
-        or fit.rises_to(low)
+        or (fit.settled or fit).rises_to(low)
     ):
         return None
     first, last = (float(order) for order in fit.orders[-2:])

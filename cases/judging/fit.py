@@ -1,11 +1,11 @@
-"""Statistics of one refinement study: local orders, asymptotic window, slope with interval, contamination.
+"""Statistics of one refinement study: local orders, windows, slope with interval; see scatter.py, contamination.py.
 
 Levels run coarse to fine. `h` (n,) is the cell size, `error` (n,) the error norm, both positive; orders and fractions
 have no unit and do not depend on the units of either. What the numbers mean for a verdict stands in order.py.
 SciPy is imported where it is called: the records of order.py are read by commands that fit nothing.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import log
@@ -13,7 +13,7 @@ from math import log
 import numpy as np
 from numpy.typing import NDArray
 
-from mpm_verify.cases.judging.records import Contamination
+from mpm_verify.cases.judging.scatter import EXACT, USUAL, about, limit, unusual
 
 Array = NDArray[np.float64]
 
@@ -21,8 +21,9 @@ STEADY = 0.15  # largest change of the local order from one level to the next in
 SHRINK = 0.6  # or each change at most this times the one before it
 AHEAD = 2  # times the levels of the window; at 1, h^2 / (1 + 128 h) with 3 % scatter fails in 22 %, not in 3 %
 RESAMPLES, SEED = 2000, 20240229  # the seed is fixed: the same errors give the same verdict
-RESOLUTION = 1e-3  # of a fraction
-EXACT = 1e-12  # relative residuals below this are round-off; they stand for a perfect fit
+LEVELS = 4  # fewer cannot show that the order has settled
+ONE_SIGMA = 0.84  # confidence of one standard error, one-sided
+BENT = 0.02  # scatter about a parabola that leaves a window to be judged, whatever it is about a line
 
 
 def local_orders(h: Array, error: Array) -> Array:
@@ -86,7 +87,7 @@ class Slope:
     error
         Its standard error.
     dof
-        Degrees of freedom behind that error.
+        Degrees of freedom behind that error; infinite where the scatter is taken to be the usual one.
     """
 
     value: float
@@ -127,7 +128,7 @@ def fit_slope(h: Array, errors: Sequence[Array]) -> Slope:
     -------
     Slope
         Its standard error comes from a bootstrap over replicates (Efron) with Satterthwaite's degrees of freedom if
-        every level has some, else from the residuals.
+        every level has some, else from the residuals and the usual scatter (scatter.py).
 
     References
     ----------
@@ -142,9 +143,10 @@ def fit_slope(h: Array, errors: Sequence[Array]) -> Slope:
         spread = np.array([len(e) - 1 for e in errors])  # outer levels weigh most: fewer degrees than sum(spread)
         dof = float((weight @ weight) ** 2 / (weight**4 / spread).sum())  # Satterthwaite (1946)
         return Slope(value, _bootstrap(weight, [np.log(e) for e in errors]), dof)
-    residual = y - y.mean() - value * x
-    dof = float(len(h) - 2)
-    return Slope(value, float(np.sqrt(residual @ residual / dof / (x @ x))), dof)
+    scatter, wide = about(x, y, 1), float(np.sqrt(x @ x))
+    if unusual(scatter, len(h) - 2):
+        return Slope(value, scatter / wide, float(len(h) - 2))
+    return Slope(value, max(scatter, USUAL) / wide, float("inf"))
 
 
 def _bootstrap(weight: Array, logs: Sequence[Array]) -> float:
@@ -156,69 +158,6 @@ def _bootstrap(weight: Array, logs: Sequence[Array]) -> float:
         means = rng.choice(y, (RESAMPLES, r)).mean(axis=1)
         slopes += w * np.sqrt(r / (r - 1)) * means  # a bootstrap mean spreads by (r-1)/r too little: half at r = 2
     return float(slopes.std())
-
-
-def contamination(h: Array, error: Array, order: float, confidence: float, noise: float = 0.0) -> Contamination:
-    """Fit e = C h^p + D h^(p-1) + E0, no term negative, weights 1/e: what of the finest error is not of order p.
-
-    Parameters
-    ----------
-    h, error
-        Cell sizes and errors (n,), positive, coarse to fine.
-    order
-        The expected order p. For p <= 1 the lower-order term would not fall with h: it is the floor and has no column
-        of its own.
-    confidence
-        Of the one-sided bound `most`.
-    noise
-        Relative scatter known from replicates: residuals of few levels may be smaller by luck.
-
-    Returns
-    -------
-    Contamination
-        Fractions of the finest error: lower-order term, floor, and the largest total that is not refuted.
-
-    References
-    ----------
-    Lawson & Hanson (1995), Solving Least Squares Problems, doi:10.1137/1.9781611971217 (non-negative least squares)
-    """
-    from scipy.special import stdtrit
-
-    expected = (h / h[-1]) ** order
-    lower = (h / h[-1]) ** (order - 1) if order > 1 else np.ones_like(h)
-    terms = [expected, lower, np.ones_like(h)] if order > 1 else [expected, np.ones_like(h)]
-    part, residual = _relative(terms, error)
-    fraction = part / part.sum()
-    dof = len(h) - np.count_nonzero(part)
-    if dof == 0:  # as many terms as levels: the fit is exact and refutes nothing
-        return Contamination(float(fraction[1:-1].sum()), float(fraction[-1]), 1.0)
-    scatter = max(residual / np.sqrt(dof), noise, EXACT)
-    limit = np.hypot(residual, stdtrit(dof, confidence) * scatter)
-
-    def refuted(total: float) -> bool:
-        mixed = [(1 - total) * expected + total * lower, (1 - total) * expected + total]
-        return bool(_relative(mixed, error)[1] > limit)
-
-    return Contamination(float(fraction[1:-1].sum()), float(fraction[-1]), _bound(refuted, float(1 - fraction[0])))
-
-
-def _relative(terms: Sequence[Array], error: Array) -> tuple[Array, float]:
-    """Non-negative parts of the terms that fit the error best in relative terms, and the norm of what is left."""
-    from scipy.optimize import nnls
-
-    part, left = nnls(np.column_stack(terms) * (error[-1] / error)[:, None], np.ones_like(error))
-    return part, float(left)
-
-
-def _bound(refuted: Callable[[float], bool], low: float) -> float:
-    """Smallest refuted fraction above `low`, by halving; 1 if even a pure contaminant is not refuted."""
-    high = 1.0
-    if not refuted(high):
-        return high
-    while high - low > RESOLUTION:
-        middle = (low + high) / 2
-        low, high = (low, middle) if refuted(middle) else (middle, high)
-    return high
 
 
 @dataclass(frozen=True)
@@ -252,29 +191,45 @@ class Fit:
         return local_orders(self.h, self.error) if self.lowest > 0 else np.empty(0)
 
     @cached_property
-    def window(self) -> tuple[int, int] | None:
-        """First and last level of the asymptotic window."""
-        return asymptotic_window(self.orders)
+    def settled(self) -> "Fit | None":
+        """Levels of the asymptotic window, None where there is none."""
+        window = asymptotic_window(self.orders)
+        return self.finest(window[1] - window[0] + 1) if window else None
 
-    @cached_property
-    def judged(self) -> slice:
-        """Levels of the window, all of them if there is none."""
-        return slice(self.window[0] if self.window else 0, None)
+    def finest(self, count: int) -> "Fit":
+        """Fit of the finest `count` levels."""
+        return Fit(self.h[-count:], self.replicates[-count:])
 
     @cached_property
     def slope(self) -> Slope | None:
-        """Fit on the judged levels, if they are three or more."""
-        return fit_slope(self.h[self.judged], self.replicates[self.judged]) if len(self.orders) > 1 else None
+        """Order fitted to all levels, if they are three or more."""
+        return fit_slope(self.h, self.replicates) if len(self.orders) > 1 else None
 
     @cached_property
-    def noise(self) -> float:
-        """Relative standard error of a mean over replicates, pooled over the levels; 0 where none is known."""
+    def noise(self) -> float | None:
+        """Relative standard error of a mean over replicates, pooled over the levels; None where there are none."""
         if len(self.orders) == 0 or min(len(e) for e in self.replicates) == 1:
-            return 0.0
+            return None
         return float(np.sqrt(np.mean([np.log(e).var(ddof=1) / len(e) for e in self.replicates])))
+
+    @cached_property
+    def scatters(self) -> bool:
+        """Whether the errors lie neither about a power of h nor about a smooth curve: one can only ask for more."""
+        x, y = np.log(self.h), np.log(self.error)
+        rough, bent = about(x, y, 1), about(x, y, 2) if len(x) > LEVELS else np.inf
+        return self.noise is None and unusual(rough, len(x) - 2) and rough > USUAL and bent > BENT
+
+    @cached_property
+    def pair(self) -> float:
+        """One standard deviation of the last local order, as far as scatter goes."""
+        return self.chance(ONE_SIGMA) * float(np.sqrt(2) / np.log(self.h[-2] / self.h[-1]))
+
+    def chance(self, confidence: float) -> float:
+        """Largest relative deviation of an error by chance, one-sided."""
+        return limit(about(np.log(self.h), np.log(self.error), 1), len(self.h) - 2, confidence, self.noise)
 
     def rises_to(self, low: float) -> bool:
         """Whether the local orders rise, and reach `low` before too many levels at that trend: not a defect yet."""
-        orders = self.orders[self.judged]
+        orders = self.orders
         trend = np.polyfit(np.arange(len(orders)), orders, 1)[0]
         return bool(trend > 0 and orders[-1] + AHEAD * (len(orders) + 1) * trend >= low)

@@ -7,10 +7,9 @@ from math import isclose
 
 import numpy as np
 
-from mpm_verify.cases.judging.fit import Fit
+from mpm_verify.cases.judging.fit import LEVELS, Fit
 from mpm_verify.cases.judging.records import Action, Expectation, Level, Recorded, Wanted
 
-LEVELS = 4  # fewer cannot show that the order has settled
 LEAST_CELLS = 2  # of a study
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from enum import StrEnum
-from math import isfinite
+from math import isfinite, sqrt
 
 from mpm_verify.solver.failure import Failure, FailureKind
 
@@ -148,12 +148,12 @@ class Level:
 class ReasonCode(StrEnum):
     """Reason of a verdict; in brackets its numbers. The words are in reports/sentences/verdicts.py."""
 
-    AS_EXPECTED = "as_expected"  # PASS [those of ORDER_*, most, and of MAGNITUDE if an error is recorded]
+    AS_EXPECTED = "as_expected"  # PASS [those of ORDER_*, most, squared, and of MAGNITUDE if an error is recorded]
     ALL_FAILED = "all_failed"  # PASS: every run ended with the registered kind
     DIVERGES = "diverges"  # PASS [h_0, error_0, h_1, error_1 of growth; finer runs that failed]
     STALLS = "stalls"  # PASS [order_best, order_last, h_last; those of growth]
     ORDER_BELOW = "order_below"  # FAIL [order, start, end, confidence, last, band_low, band_high]
-    CONTAMINATED = "contaminated"  # FAIL [lower, floor, most]
+    CONTAMINATED = "contaminated"  # FAIL [lower, floor, most, squared]
     MAGNITUDE = "magnitude"  # FAIL [h, ratio, within]
     FAR_OFF = "far_off"  # FAIL: more than FAR times the recorded error, carried over [h, ratio, recorded_h]
     RUN_ENDED = "run_ended"  # FAIL: particles were inverted or left the grid, where an order is expected
@@ -169,7 +169,8 @@ class ReasonCode(StrEnum):
     NOT_SETTLED = "not_settled"  # [local orders]
     ORDER_ABOVE = "order_above"
     ORDER_UNDECIDED = "order_undecided"
-    CONTAMINATION_OPEN = "contamination_open"  # [limit, lower, floor, most]
+    CONTAMINATION_OPEN = "contamination_open"  # [limit, lower, floor, most, squared]
+    ADDS_IN_SQUARE = "adds_in_square"  # [shown]
     MAGNITUDE_CARRIED = "magnitude_carried"  # [h, ratio]
     NEITHER = "neither"  # growth, or a stall below `stall`, nor convergence [stall, h_0, error_0, h_1, error_1]
 
@@ -211,16 +212,35 @@ class Reason:
 
 @dataclass(frozen=True, slots=True)
 class Contamination:
-    """Fractions of the finest error: lower-order term, floor, and the largest total that the data do not refute."""
+    """Fractions of the finest error that are not of the expected order.
+
+    Parameters
+    ----------
+    lower, floor
+        Lower-order term and floor in the best fit of the error.
+    added
+        Largest total that the data do not refute.
+    squared
+        The same of parts that add in the square, which raise an error by less than their fraction.
+    shown
+        Fraction that adds in the square and is shown to be there; 0 where none is.
+    """
 
     lower: float
     floor: float
-    most: float
+    added: float
+    squared: float = 0.0
+    shown: float = 0.0
 
     @property
     def total(self) -> float:
         """Fraction of the finest error that is not of the expected order."""
         return self.lower + self.floor
+
+    @property
+    def most(self) -> float:
+        """Largest fraction by which the finest error would fall without what contaminates it, in either way."""
+        return max(self.added, 1 - sqrt(1 - min(self.squared, 1.0) ** 2))
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 from math import inf, isqrt
-from typing import ClassVar, get_args
+from typing import Any, ClassVar, get_args
 
 from mpm_verify.cases.harness.study import ResultRecord, RunRecord, axis
 from mpm_verify.mms.blind_spots import BlindSpot
@@ -16,7 +16,9 @@ PRECISIONS = ("double", "single")
 PATHS = ("h", "h2")  # of dt as cells get finer
 BEGIN = 8  # cells at which both paths have the same C dt / dx
 AXES = {"cells": (8, 16, 32, 64, 128), "ppc": (1, 4, 9)}  # values that nobody asks for; of the rest the defaults
-QUICK = {"cells": (8, 12, 16, 24, 32), "ppc": (4,)}
+QUICK: dict[str, tuple[Any, ...]] = {
+    "solution": ("axis_aligned", "clamped_shear"), "cells": (8, 12, 16, 24, 32), "ppc": (4,)
+}  # fmt: skip
 SOLID = {"cells": (4, 6, 8, 12, 16), "ppc": (8,)}  # of a solution in three dimensions, whatever else
 
 

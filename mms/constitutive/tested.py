@@ -9,16 +9,16 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
 from math import isfinite
-from typing import ClassVar
-
-import numpy as np
-from numpy.typing import ArrayLike
+from typing import TYPE_CHECKING, ClassVar, TypeAlias
 
 from mpm_verify.solver.failure import RunFailed
 
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike  # what a command completes and helps with imports no numpy
+
 EPS = 2.0**-52
 MARGIN = 100.0
-Pairs = list[tuple[ArrayLike, ArrayLike, float]]
+Pairs: TypeAlias = "list[tuple[ArrayLike, ArrayLike, float]]"
 FAILED = 1e99  # residual of what ended, or is not a number
 
 
@@ -112,8 +112,10 @@ def bound(operations: float) -> float:
     return MARGIN * EPS * operations
 
 
-def off(found: ArrayLike, expected: ArrayLike, scale: float) -> float:
+def off(found: "ArrayLike", expected: "ArrayLike", scale: float) -> float:
     """Largest distance of two arrays over a scale; FAILED where one is not finite."""
+    import numpy as np
+
     with np.errstate(all="ignore"):
         distance = np.abs(np.asarray(found) - np.asarray(expected))
     worst = float(distance.max(initial=0.0)) / scale

@@ -24,3 +24,12 @@ def seen(record: Record, solution: str) -> list[str]:
 def short(record: Record, solution: str) -> str:
     """Text on what cannot be seen, for a card: empty if nothing but what always holds, which is said once."""
     return " ".join(words.unseen(spot) for spot in blind_spots(record, solution) if spot.blind and spot not in ALWAYS)
+
+
+def unseen(record: Record) -> str:
+    """Text on what no solution of the study can see: one may see what another does not."""
+    audits = [blind_spots(record, solution) for solution in record.solutions]
+    codes = [{spot.code for spot in spots if spot.blind} for spots in audits]
+    common = set.intersection(*codes) if codes else set()
+    told = {spot.code: words.unseen(spot) for spots in audits for spot in spots if spot.code in common}
+    return " ".join(told.values())

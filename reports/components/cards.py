@@ -11,7 +11,9 @@ from mpm_verify.reports.components import audited
 from mpm_verify.reports.components.stalls import short
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences import commands, verdicts
+from mpm_verify.reports.sentences import headline as headlines
 
+MET = "MET"  # look of a registered non-convergence that was seen: not that of a convergence
 DIVERGES = {
     Outcome.PASS: "Does not converge, as registered before the run",
     Outcome.INCONCLUSIVE: "Not decided",
@@ -29,9 +31,11 @@ PLAIN = {
 
 @dataclass(frozen=True)
 class Card:
-    """Content of one card. `outcome` picks word, shape, colour; `facts` are (label, text); `command` would decide."""
+    """Content of one card. `look` picks shape and colour; `facts` are (label, text); `command` would decide."""
 
     outcome: str
+    badge: str
+    look: str
     title: str
     headline: str
     facts: tuple[tuple[str, str], ...]
@@ -56,7 +60,9 @@ def summary(record: Record) -> str:
         return "This study judges nothing: it only shows."
     others = [f"{counts[word]} {word}" for word in words.MEANING if word != "PASS" and counts[word]]
     passed = f"{counts['PASS']} of {words.count(total, 'judged quantity').replace('quantitys', 'quantities')} PASS"
-    return ", ".join([passed, *others]) + "."
+    met = sum(headlines.badge(f) != f.verdict.outcome for f in record.findings if f.counts)
+    registered = [f"{met} of them as a registered non-convergence"] if met else []
+    return ", ".join([passed, *registered, *others]) + "."
 
 
 def _card(record: Record, found: Finding) -> Card:
@@ -73,8 +79,11 @@ def _card(record: Record, found: Finding) -> Card:
     falls = diverges and e is not None and e.stall is not None
     headline = (STALLS if falls else DIVERGES if diverges else PLAIN)[v.outcome]
     grows = divergence(record, found) if diverges and not falls and v.outcome is Outcome.PASS else ""
+    badge = headlines.badge(found)
     return Card(
         str(v.outcome),
+        badge,
+        str(v.outcome) if badge == v.outcome else MET,
         title,
         headline,
         facts,

@@ -16,16 +16,17 @@ from pydantic import TypeAdapter
 from mpm_verify.cases.harness.axes import particle_axes, position_axes, time_axes
 from mpm_verify.cases.harness.checks import Check
 from mpm_verify.cases.harness.contract import case_named
+from mpm_verify.cases.harness.controls import Control
 from mpm_verify.cases.harness.study import ResultRecord
 from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.cases.judging.records import Ended
 from mpm_verify.cases.judging.stall import Cause, Stall
 from mpm_verify.reports.frames import USUAL, Record, joined
-from mpm_verify.reports.sentences import commands, failures, stalls
+from mpm_verify.reports.sentences import commands, controls, failures, stalls
 from mpm_verify.solver.failure import Failure
 from mpm_verify.solver.plugins import label
 
-VERSION = 3
+VERSION = 4
 REFINEMENT_ROWS = ("VerdictRow", "ShownRow")
 Row = dict[str, Any]
 
@@ -118,6 +119,17 @@ class CheckRow:
 
 
 @dataclass(frozen=True)
+class ControlRow:
+    """Negative control: on how many verdicts it was tried, and those that passed all the same, by their refinement."""
+
+    code: str
+    name: str
+    tried: int
+    refused: bool
+    passed: list[str]
+
+
+@dataclass(frozen=True)
 class RunRow:
     """Run, and how it ended; `errors` by quantity and norm, null of a failed run."""
 
@@ -148,6 +160,7 @@ class Document:
     shown: list[ShownRow]
     axes: dict[str, list[dict[str, Any]]]
     checks: list[CheckRow]
+    controls: list[ControlRow]
     runs: list[RunRow]
     more: dict[str, Any]
     report: str | None
@@ -167,6 +180,7 @@ def document(record: Record, page: Path | None, more: Row) -> str:
         "shown": [shown(record, f) for f in found.findings if not f.counts],
         "axes": axes(record),
         "checks": [asdict(check_row(check)) for check in found.checks],
+        "controls": [asdict(control_row(record, control)) for control in found.controls],
         "runs": [run_row(record.results[run.digest]) for run in study.runs if run.digest in record.results],
         "more": finite(more),
         "report": str(page) if page else None,
@@ -259,6 +273,12 @@ def check_row(check: Check) -> CheckRow:
     return CheckRow(
         check.group, check.name, found, expected, check.way, within, check.source, str(check.outcome)
     )  # fmt: skip
+
+
+def control_row(record: Record, control: Control) -> ControlRow:
+    """Row of a negative control."""
+    passed = [record.label(plan.run) for plan in control.passed]
+    return ControlRow(str(control.code), controls.name(control), len(control.tried), control.refused, passed)
 
 
 def run_row(result: ResultRecord[Any]) -> Row:

@@ -2,24 +2,32 @@
 
 from mpm_verify.reports import words
 from mpm_verify.reports.frames import Record
-from mpm_verify.reports.sentences import commands, own_solver, verdicts
+from mpm_verify.reports.sentences import commands, controls, own_solver, verdicts
+from mpm_verify.reports.sentences.headline import badge, headline
 
 MARKS = {"PASS": "✅", "FAIL": "❌", "INCONCLUSIVE": "❔", "ERROR": "⚠️"}
+MET = "🔷"  # a registered non-convergence that was seen
 
 
 def markdown(record: Record) -> str:
     """Heading with the outcome, a row for each judged quantity and for each check that did not pass."""
     study, found = record.study, record.analysis
     lines = [f"### {MARKS[found.outcome]} {found.outcome}: {escaped(study.title)}", "", f"`{study.command}`", ""]
+    if finding := headline(record):
+        lines += [finding, ""]
     judged = [f for f in found.findings if f.counts]
     if judged:
         lines += ["| | refinement | quantity | order | expected | reason |", "| --- | --- | --- | --- | --- | --- |"]
         for f in judged:
             plan, v = f.plan, f.verdict
-            cells = (f"{MARKS[v.outcome]} {v.outcome}", record.label(plan.run), words.measured(plan),
+            said = badge(f)
+            mark = MARKS[v.outcome] if said == v.outcome else MET
+            cells = (f"{mark} {said}", record.label(plan.run), words.measured(plan),
                      words.order(v.observed), verdicts.registered(plan.expectation),
                      commands.reason(study, f))  # fmt: skip
             lines.append(f"| {' | '.join(map(escaped, cells))} |")
+    if told := controls.sentence(found.controls):
+        lines += ["", told]
     lines += [f"- {escaped(hint)}" for hint in own_solver.hints(record.results.values())]
     if found.checks:
         missed = [check for check in found.checks if check.outcome != "PASS"]

@@ -129,7 +129,7 @@ def number(value: float, _: object = None) -> str:
 
 
 def save(figure: Figure, folder: Path, name: str, kinds: Sequence[str] = ("svg", "pdf", "png")) -> bytes:
-    """Write name.svg, .pdf and .png into `folder` and give the SVG; the same figure gives the same bytes."""
+    """Write name.svg, .pdf and .png into `folder` and give the first; the same figure gives the same bytes."""
     with rc_context(RC):
         figure.draw_without_rendering()
         figure.set_layout_engine("none")  # laid out once: three formats would do it three times
@@ -137,4 +137,4 @@ def save(figure: Figure, folder: Path, name: str, kinds: Sequence[str] = ("svg",
             buffer = io.BytesIO()
             figure.savefig(buffer, format=kind, metadata=METADATA[kind], dpi=200)
             (folder / f"{name}.{kind}").write_bytes(buffer.getvalue())
-    return (folder / f"{name}.svg").read_bytes()
+    return (folder / f"{name}.{kinds[0]}").read_bytes()

@@ -16,7 +16,8 @@ from mpm_verify.reports.components.show import Table
 from mpm_verify.reports.figures import style
 from mpm_verify.reports.figures.convergence import cell_axis
 from mpm_verify.reports.frames import Record
-from mpm_verify.reports.sentences import commands, failures, verdicts
+from mpm_verify.reports.sentences import commands, controls, failures, verdicts
+from mpm_verify.reports.sentences.headline import badge, headline
 from mpm_verify.reports.tables import plain
 
 
@@ -33,7 +34,7 @@ def page(record: Record, vtk: bool = False, more: Sequence[Section] = (), last: 
     )  # fmt: skip
     made = render(
         record.store.folder, examination, lambda _, add: [*sections(record, add), *more, last or runs(record)],
-        outcome=str(found.outcome), said=summary(record) if study.plans else "",
+        outcome=str(found.outcome), said=" ".join([headline(record), summary(record)]).strip() if study.plans else "",
     )  # fmt: skip
     plain.write(record, record.store.folder / "tables")
     return made
@@ -49,7 +50,8 @@ def sections(record: Record, add: Add) -> list[Section]:
         images = [(add(f"error_{q}_{n}", errors(record, q, n), f"Error of {q} against cell size."),
                    f"Error of the {said} against cell size{line}.".replace("of the error ", ""))
                   for (q, n), said in named.items()]  # fmt: skip
-        found.append(Section("verdicts", "Verdicts", record.study.words, images, [verdict_table(record)]))
+        told = [*record.study.words, *filter(None, [controls.sentence(record.analysis.controls)])]
+        found.append(Section("verdicts", "Verdicts", told, images, [verdict_table(record)]))
         found.append(Section("errors", "Errors and orders", tables=[levels(record, f) for f in record.findings]))
     if record.analysis.checks:
         found.append(Section("checks", "Checks", tables=[checks_table("Checks", record.analysis.checks, group=True)]))
@@ -62,7 +64,7 @@ def verdict_table(record: Record) -> Table:
     rows = []
     for f in record.findings:
         plan, v = f.plan, f.verdict
-        said = str(v.outcome) if f.counts else "shown"
+        said = badge(f) if f.counts else "shown"
         rows.append((record.label(plan.run), words.measured(plan, ", "), said, words.order(v.observed),
                      words.interval(v.interval), verdicts.registered(plan.expectation),
                      commands.reason(record.study, f)))  # fmt: skip

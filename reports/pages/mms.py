@@ -25,6 +25,8 @@ from mpm_verify.reports.figures.particles import particles
 from mpm_verify.reports.figures.position import position
 from mpm_verify.reports.figures.time_step import time_step
 from mpm_verify.reports.frames import Record
+from mpm_verify.reports.sentences import controls
+from mpm_verify.reports.sentences.headline import headline
 from mpm_verify.reports.sentences.remarks import left_out
 from mpm_verify.reports.tables import mms as tables
 from mpm_verify.reports.tables.cost import compares
@@ -67,6 +69,7 @@ def _page(record: Record, folder: Path, field: tuple[int, int]) -> str:
     return template("report.html.j2").render(
         record=record,
         study=record.study,
+        finding=headline(record),
         summary=summary(record),
         cards=cards(record),
         meaning=words.MEANING,
@@ -80,6 +83,7 @@ def _page(record: Record, folder: Path, field: tuple[int, int]) -> str:
         graded=show_graded if graded.found(record) else None,
         looked=looked(record),
         quantities=QUANTITIES,
+        controls=controls,
         words=words,
     )
 

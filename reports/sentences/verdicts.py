@@ -85,7 +85,7 @@ def ended(end: Ended) -> str:
 
 
 def _as_expected(r: Reason) -> str:
-    parts = [*([_order(r)] if "order" in r.numbers else []), f"contamination at most {_percent(r, 'most', 1)}"]
+    parts = [*([_order(r)] if "order" in r.numbers else []), _most(r)]
     return "; ".join(parts + ([_magnitude(r)] if "ratio" in r.numbers else []))
 
 
@@ -151,6 +151,10 @@ def _order(r: Reason) -> str:
 def _parts(r: Reason) -> str:
     lower, floor, most = _percent(r, "lower"), _percent(r, "floor"), _percent(r, "most", 1)
     return f"lower order {lower}, floor {floor} of the finest error, at most {most}"
+
+
+def _most(r: Reason) -> str:
+    return f"contamination at most {_percent(r, 'most', 1)}, {_percent(r, 'squared')} where it adds in the square"
 
 
 def _run_ended(r: Reason) -> str:
@@ -247,6 +251,9 @@ SAID: dict[ReasonCode, Callable[[Reason], str]] = {
     ReasonCode.ORDER_ABOVE: lambda r: f"{_order(r)}: above the band, so the expectation is wrong or errors cancel",
     ReasonCode.ORDER_UNDECIDED: lambda r: f"{_order(r)}: undecided",
     ReasonCode.CONTAMINATION_OPEN: lambda r: f"contamination of {_percent(r, 'limit')} is not ruled out: {_parts(r)}",
+    ReasonCode.ADDS_IN_SQUARE: lambda r: (
+        f"{_percent(r, 'shown')} of the finest error are not of the expected order, and add in the square"
+    ),
     ReasonCode.MAGNITUDE_CARRIED: lambda r: f"{_magnitude(r)}, carried over",
     ReasonCode.NEITHER: _neither,
 }

@@ -15,11 +15,14 @@ from mpm_verify.cases.harness.study import QuantityPlan
 from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.cases.judging.stall import Stall
 from mpm_verify.reports import words
+from mpm_verify.reports.components.audited import unseen
 from mpm_verify.reports.frames import Record
-from mpm_verify.reports.sentences import commands, own_solver, stalls, verdicts
+from mpm_verify.reports.sentences import commands, controls, own_solver, stalls, verdicts
+from mpm_verify.reports.sentences.headline import badge, headline
 from mpm_verify.solver.plugins import label
 
 STYLES = {"PASS": "bold green", "FAIL": "bold red", "INCONCLUSIVE": "bold yellow", "ERROR": "bold magenta"}
+MET = "bold blue"  # a registered non-convergence that was seen
 ALWAYS = ("u", "rms")
 SAME = "the same"  # as the level above, that failed
 
@@ -39,6 +42,8 @@ def show(record: Record, page: Path | None, console: Console | None = None) -> N
     if not out.is_terminal:
         out.width = max(out.width, 100)
     out.print(f"\n[bold]{study.title}[/bold]")
+    if told := headline(record):
+        out.print(told)
     shown = [f for f in found if f.counts or f.plan.run.given or (f.plan.quantity, f.plan.norm) == ALWAYS]
     out.print(errors_table(record, shown))
     if (most := max((len(level.errors) for f in found for level in f.levels), default=1) - 1) > 0:
@@ -50,6 +55,11 @@ def show(record: Record, page: Path | None, console: Console | None = None) -> N
             verdict(out, record, finding)
     if beside := verdicts.beside(found):
         out.print(f"\n{beside}", style="dim")
+    if spoilt := record.analysis.controls:
+        loose = not all(one.refused for one in spoilt)
+        out.print(f"\n{controls.sentence(spoilt)}", style=STYLES["INCONCLUSIVE"] if loose else "dim")
+    if blind := unseen(record):
+        out.print(f"\nNot seen here: {blind}", style="dim", markup=False)
     for finding in found:
         if finding.stall:
             out.print(stall(record, finding, finding.stall))
@@ -152,8 +162,9 @@ def verdict(out: Console, record: Record, finding: Finding) -> None:
 def sentence(record: Record, finding: Finding) -> Text:
     """Verdict in words."""
     plan, v = finding.plan, finding.verdict
-    expected = f", {verdicts.expected(plan.expectation)} expected" if plan.expectation else ""
-    text = Text(f"\n{v.outcome}", STYLES[v.outcome])
+    said = badge(finding)
+    expected = f", {verdicts.expected(plan.expectation)} expected" if plan.expectation and said == v.outcome else ""
+    text = Text(f"\n{said}", STYLES[v.outcome] if said == v.outcome else MET)
     text.append(f"  {named(record, plan)}{expected}: {verdicts.said(v.reason)}.", "not bold default")
     return text
 
