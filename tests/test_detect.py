@@ -128,7 +128,7 @@ def test_the_certificate_is_quoted_with_what_was_missed() -> None:
 
 def test_known_answers_are_given_and_each_part_can_fail(monkeypatch: pytest.MonkeyPatch) -> None:
     assert rule.ask() == ("PASS", "")
-    monkeypatch.setattr("mpm_verify.cases.judging.order.NO_PASS", 1.0)
+    monkeypatch.setattr("mpm_verify.cases.judging.order.COUPLED", 1e9)
     assert rule.ask()[0] == "FAIL"
     monkeypatch.undo()
     monkeypatch.setattr("mpm_verify.cases.judging.fit.STEADY", 1.5)

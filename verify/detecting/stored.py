@@ -105,7 +105,10 @@ def studied(study: Any, keep: Store, change: Any = lambda run, errors: errors) -
 
 def judged(work: Path) -> list[tuple[str, bool]]:
     """Whether a study of recorded errors passes, and one of others does not."""
-    study, keep = build(Asked("mms", {"method": ("cpdi",)}, 1, True), ""), Store(work / "judged")
+    study, keep = (
+        build(Asked("mms", {"method": ("cpdi",), "solution": ("axis_aligned",)}, 1, True), ""),
+        Store(work / "judged"),
+    )
 
     def times(quantity: str, factor: float, half: bool | None = None) -> Any:
         def change(run: Run, errors: dict[str, float]) -> dict[str, float]:
