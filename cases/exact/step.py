@@ -4,6 +4,7 @@ from collections.abc import Callable
 from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mpm_verify.cases.exact.body import (
     BLEND,
@@ -48,10 +49,17 @@ KNOWN = ("flip", "pic", "apic", "fmpm")  # transfers whose formulas stand in den
 
 
 def formulas(subject: Subject, variant: Variant) -> Tested:
-    """Step of random v, F, sigma and b with a wall that moves; x, v, F, sigma and B against full matrices."""
+    """Step of random v, F, sigma and b with a wall that moves, which hands its reaction on, or does not."""
+    pairs = [pair for stops in (False, True) for pair in held_against(subject, variant, stops)]
+    return Tested(f"step {variant}", farthest(pairs), bound(4 * subject.support), Part.STEP)
+
+
+def held_against(subject: Subject, variant: Variant, stops: bool) -> "Pairs":
+    """x, v, F, sigma and B after such a step beside those of full matrices, each with its scale."""
     p = shaken(subject, populated(subject, layout(filled=True), np.eye(2)))
     model = modelled(subject, p, variant, ("roller", "free", "fixed", "free"), FILLED)
     model.walls.value[:], model.walls.rate[:] = 0.02 * subject.speed, 0.1 * subject.speed**2 / DX
+    model.walls.stops = stops
     model.particles.affine_velocity *= 0
     if model.particles.affine_velocity.size:
         model.particles.affine_velocity += 0.01 * subject.speed * DX * random(len(p), 4, seed=4)
@@ -69,7 +77,7 @@ def formulas(subject: Subject, variant: Variant) -> Tested:
     ]
     if dense.affine:
         pairs.append((by_id(q, "affine_velocity").reshape(-1, 2, 2), expected.B[rows], c * DX))
-    return Tested(f"step {variant}", farthest(pairs), bound(4 * subject.support), Part.STEP)
+    return pairs
 
 
 def affine(subject: Subject, variant: Variant) -> list[Tested]:
@@ -84,7 +92,11 @@ def affine(subject: Subject, variant: Variant) -> list[Tested]:
     def acceleration(x: Floats) -> Floats:
         return np.asarray(drag + (x - middle) @ pull.T)
 
-    walls = ruled(lambda x, t, step: (np.ones(x.shape, bool), velocity(x), acceleration(x)))
+    def rule(x: Floats, t: float, step: float) -> tuple[NDArray[np.bool_], Floats, Floats]:
+        """Grid of the first step alone: one that is not moved, or at another time, has another velocity."""
+        return np.ones(x.shape, bool), (1 + t / dt) * (step / dt) * velocity(x), acceleration(x)
+
+    walls = ruled(rule)
     p = shaken(subject, populated(subject, layout(), STRAINED), strain=0.0)
     model = modelled(subject, p, variant, walls)
     x, v, F = (by_id(model.particles, name) for name in ("x", "v", "F"))

@@ -10,6 +10,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
 from matplotlib.figure import Figure
 
 from mpm_verify.reports.figures import style
+from mpm_verify.reports.sentences.detect import quoted
 
 TEMPLATES = Path(__file__).absolute().parent.parent / "templates"
 Add = Callable[[str, Figure, str], "Image"]
@@ -30,6 +31,7 @@ def template(name: str) -> Template:
     """Template of this package; a name that is not defined is an error."""
     environment = Environment(loader=FileSystemLoader(TEMPLATES), undefined=StrictUndefined, autoescape=True)
     environment.trim_blocks = environment.lstrip_blocks = True
+    environment.globals["detected"] = quoted()
     return environment.get_template(name)
 
 

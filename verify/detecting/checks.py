@@ -1,0 +1,157 @@
+"""Checks that a campaign asks: studies of the cases, the exactness battery, and known answers of what judges.
+
+Each gives an outcome and a code for the first thing that is wrong. Of a study only the runs that what was planted can
+change are run: a run is named by what computes it, and the Results of the sound package are there.
+"""
+
+import shutil
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from mpm_verify.cases.harness.analysis import Analysis, analyse
+from mpm_verify.cases.harness.build import Asked, make, union
+from mpm_verify.cases.harness.contract import case_named
+from mpm_verify.cases.harness.runner import check_result
+from mpm_verify.cases.harness.store import Store
+from mpm_verify.cases.judging.records import Outcome
+from mpm_verify.verify.detecting import known, rule, states, stored
+
+PASS = str(Outcome.PASS)
+Answer = tuple[str, str]
+SOILS = ("mohr_coulomb", "drucker_prager", "ubcsand", "hypoelastic", "linear_elastic")
+VARIANTS = (
+    "mohr_coulomb:c=1000,sigma_t=500",
+    "mohr_coulomb:c=1000,sigma_t=1e6",
+    "mohr_coulomb:void=1",
+)  # cut-off, apex, void
+PATHS: Mapping[str, tuple[Any, ...]] = {"test": ("oedometric", "biaxial", "shear_volume", "properties"), "steps": (50,)}
+SMALL: Mapping[str, tuple[Any, ...]] = {
+    "cells": (3,),
+    "ppc": (4,),
+    "aspect": (2.0,),
+    "channel": (6.0,),
+    "duration": (0.3,),
+}
+
+
+@dataclass(frozen=True)
+class Subject:
+    """Subject of the checks: a method, the folder with Results of the sound package, one for new ones, and which."""
+
+    method: str
+    sound: Path
+    work: Path
+    keep: bool
+
+
+def study(subject: Subject, name: str, *asked: Asked, finish: int | None = None) -> tuple[Any, Any, Analysis]:
+    """Study with its Results and what is judged; runs that the sound package has too are not run again."""
+    made = union(asked, "", finish=finish)
+    folder = (subject.sound if subject.keep else subject.work) / name
+    store, results, case = Store(folder, made.case), {}, case_named(made.case)
+    store.create(made)
+    for run in made.runs:
+        taken(subject.sound / name / "runs", store.runs, run.digest)
+        found = store.get(run.digest)
+        if found is None:
+            found, arrays = case.execute(run)
+            check_result(case, run, found, arrays)
+            store.put(found, arrays)
+        results[run.digest] = found
+    return made, results, analyse(made, results, store)
+
+
+def taken(sound: Path, runs: Path, digest: str) -> None:
+    """Take a Result of the sound package, if it has that run."""
+    for suffix in (".npz", ".json"):
+        file = sound / f"{digest}{suffix}"
+        if sound != runs and file.is_file():
+            shutil.copy(file, runs / file.name)
+
+
+def judged(subject: Subject, name: str, *asked: Asked, finish: int | None = None) -> Answer:
+    """Outcome of a study, and the first thing in it that is as bad."""
+    _, results, found = study(subject, name, *asked, finish=finish)
+    ended = next((str(result.failure.kind) for result in results.values() if result.failure), "")
+    for f in found.findings:
+        if f.counts and f.verdict.outcome is found.outcome is not Outcome.PASS:
+            return str(found.outcome), f"{f.plan.quantity}: {f.verdict.reason.code}{ended and f', {ended}'}"
+    for check in found.checks:
+        if check.outcome is found.outcome is not Outcome.PASS:
+            return str(found.outcome), check.name
+    return str(found.outcome), ""
+
+
+def manufactured(solution: str) -> Callable[[Subject], Answer]:
+    """Quick study of a manufactured solution: orders and recorded errors of u, v, F and sigma."""
+    return lambda s: judged(s, solution, Asked("mms", {"method": (s.method,), "solution": (solution,)}, 1, True))
+
+
+def exact(subject: Subject) -> Answer:
+    """Exactness battery of the method with every constitutive model, and soils with cohesion and void strain."""
+    return judged(
+        subject, "exact", Asked("exact", {"method": (subject.method,), "material": ("neo_hookean", *SOILS, *VARIANTS)})
+    )
+
+
+def material(subject: Subject) -> Answer:
+    """Element tests of every constitutive model, along the paths that tell most in least time."""
+    models = ("neo_hookean", *SOILS)
+    for model in models:
+        outcome, evidence = judged(subject, f"element_{model}", Asked("element", {"material": (model,), **PATHS}))
+        if outcome != PASS and not (outcome == str(Outcome.INCONCLUSIVE) and not evidence):  # nothing to judge
+            return outcome, f"{model}: {evidence}"
+    return PASS, ""
+
+
+def objectivity(subject: Subject) -> Answer:
+    """Rates and negative controls along prescribed motions."""
+    case = case_named("objectivity")
+    run = make(case, {"part": "kinematic"})
+    store = Store((subject.sound if subject.keep else subject.work) / "objectivity", case.name)
+    store.runs.mkdir(parents=True, exist_ok=True)
+    taken(subject.sound / "objectivity" / "runs", store.runs, run.digest)
+    result = store.get(run.digest)
+    if result is None:
+        result, arrays = case.execute(run)
+        store.put(result, arrays)
+    wrong = [check for check in result.checks if check.outcome is not Outcome.PASS]
+    return (str(wrong[0].outcome), wrong[0].name) if wrong else (PASS, "")
+
+
+def column(name: str, **more: tuple[Any, ...]) -> Callable[[Subject], Answer]:
+    """Invariants of a small column for the method."""
+
+    def ask(subject: Subject) -> Answer:
+        limits = {"limit": (0.5,)} if subject.method.startswith("cpdi") else {}
+        return judged(
+            subject, name, Asked("column", {"method": (subject.method,), **SMALL, **limits, **more}), finish=0
+        )
+
+    return ask
+
+
+def wave(subject: Subject) -> Answer:
+    """Frequency of a bar against its closed form."""
+    return judged(subject, "wave_bar", Asked("wave_bar", {"method": (subject.method,)}, 1, True))
+
+
+CHECKS: Mapping[str, Callable[[Subject], Answer]] = {
+    "axis_aligned": manufactured("axis_aligned"),
+    "clamped_shear": manufactured("clamped_shear"),
+    "exact": exact,
+    "derivation": lambda s: known.derivation(),
+    "material": material,
+    "objectivity": objectivity,
+    "wave_bar": wave,
+    "column": column("column", damping=(0.05,)),
+    "smoothing": column("smoothing", smoothing=("full",), damping=(0.05,), damping_kind=("objective",)),
+    "states": lambda s: states.ask(s.method),
+    "norms": lambda s: known.norms(),
+    "rule": lambda s: rule.ask(),
+    "store": lambda s: stored.store(s.work),
+    "numbers": lambda s: stored.numbers(s.work),
+}
+QUICK = ("axis_aligned", "clamped_shear", "exact")
