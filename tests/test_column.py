@@ -74,6 +74,7 @@ def test_particles_that_gain_energy_are_seen() -> None:
     assert values["misworked"] > 0.01
 
 
+@pytest.mark.slow
 def test_crossings_make_energy_in_classical_mpm() -> None:
     """The work of its forces is another than that of its stress; of the others it is the same to a thousandth."""
     worked = {

@@ -84,6 +84,7 @@ def test_a_list_with_parameters(text: str, parts: list[str]) -> None:
     assert split(text) == parts
 
 
+@pytest.mark.slow
 def test_several_methods_and_solutions_are_one_study(
     verify: Call, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:

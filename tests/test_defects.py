@@ -223,6 +223,7 @@ def last_order(results: list[Result]) -> float:
     return verdict(results).local_orders[-1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("solution", ["axis_aligned", "clamped_shear"])
 def test_without_a_defect(solution: str) -> None:
     """PASS, order two; the registered errors of axis_aligned to 2 % (docs/results.md)."""

@@ -262,6 +262,7 @@ def test_the_transcript_is_what_is_printed(tmp_path: Path) -> None:
 # ---- blocks
 
 
+@pytest.mark.slow
 def test_python_blocks_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     """Those of the page on Python one after another, as in a notebook; that of README is the first of them."""
     import matplotlib

@@ -169,6 +169,7 @@ parameters = st.fixed_dictionaries(
 )
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=300, derandomize=True, database=None)
 @given(parameters, st.tuples(numbers, numbers, numbers, numbers))
 def test_whatever_comes(values: dict[str, Any], state: tuple[float, ...]) -> None:

@@ -153,6 +153,7 @@ def test_standard_error_is_closed(out: str, err: str, arguments: list[str], code
     assert code == 0 or not file.exists() or file.read_text() == ""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("redirected", [">&-", ">/dev/full", "2>&-"])
 def test_a_study_whose_end_nobody_reads(tmp_path: Path, redirected: str) -> None:
     """It is stored; what cannot be printed is no verdict."""
@@ -185,6 +186,7 @@ def own(folder: Path, imported: str = "", called: str = "pass") -> str:
     return str(path)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("where", "line"), [("imported", 4), ("called", 6)], ids=["when it is imported", "in displacement()"]
 )

@@ -120,6 +120,7 @@ def test_values_are_right(solution: str) -> None:
             np.testing.assert_allclose(b, [force[f"b{axis}"][row] for axis in axes], rtol=3e-14, atol=1e-24)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("solution", EVERY)
 def test_tolerances_are_narrow(solution: str) -> None:
     """A tenth of a millionth of the largest force or stress at the very most, and not the same in all rows."""

@@ -50,6 +50,7 @@ def test_particles_are_read_back_bit_by_bit(solution: str, tmp_path: Path) -> No
         assert all(again[name].tobytes() == np.ascontiguousarray(values[name]).tobytes() for name in values)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("solution", PLANE)
 def test_particles_are_those_of_a_run(solution: str) -> None:
     """Positions, velocities at -dt/2, F, sigma, volumes and masses of the reference solver at its start; its grid."""

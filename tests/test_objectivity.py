@@ -120,6 +120,7 @@ def test_figure2_sees_all_but_three_misreadings(rate: str) -> None:
 # ---- the whole
 
 
+@pytest.mark.slow
 def test_all_parts_come_together() -> None:
     """Every check is there and has a number; on this coarse grid those of the runs need not pass, the others must."""
     found = coarse()

@@ -97,6 +97,7 @@ FILLS = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", FILLS)
 def test_a_fill_that_is_wrong(tmp_path: Path, name: str) -> None:
     """Some of them end a process; this one goes on."""
@@ -192,6 +193,7 @@ RAISES = "    if ny > 18 and x[0] > 0.5:\n        raise ValueError('no')\n"  # n
 MMS = ("mms", "--cells", "8", "--ppc", "4", "--out", "study")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("jobs", ["1", "2"])
 def test_an_update_that_raises_in_a_run(verify: Call, jobs: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """The file and its line, from a worker process too."""

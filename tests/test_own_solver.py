@@ -549,6 +549,7 @@ def wrong_at_walls(case: Case) -> Any:
     return {step: {"x": made.x(X, step * r.dt) + (1e-5 * r.dx if held else 1e-4 * r.dx**2)} for step in r.frames}
 
 
+@pytest.mark.slow
 def test_walls_are_told_from_the_interior(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """With walls alone the command that tells is printed; with both, what it tells."""
     more: dict[str, Any] = {"cells": [4, 6, 8, 12], "order": 2.0, "courant": [0.4, 0.2]}
@@ -567,6 +568,7 @@ def test_walls_are_told_from_the_interior(tmp_path: Path, capsys: pytest.Capture
     assert commands.walls(study, sound, tmp_path / "a") == ""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", STARTS)
 def test_a_start_gives_each_field_one_level(name: str) -> None:
     """Under all names of the field; and the force is that of its end where it is asked for."""
@@ -616,6 +618,7 @@ def pulling_is_pushing(case: Case) -> Any:
     return found
 
 
+@pytest.mark.slow
 def test_hints_reach_a_ci_job(tmp_path: Path) -> None:
     """In JUnit, in the Markdown summary, and as a value of the run."""
     done = called(tmp_path, pulling_is_pushing)

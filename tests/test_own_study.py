@@ -72,6 +72,7 @@ def test_what_is_expected_of_a_file(tmp_path: Path) -> None:
     assert (found.order, found.source) == (1.5, "declared in the solution's file")
 
 
+@pytest.mark.slow
 def test_the_example_of_the_readme_passes(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -134,6 +135,7 @@ def test_cells_that_do_not_fit_are_refused_with_some_that_do() -> None:
         check_cells("own.py", box(1, 3.14159265), (8,))
 
 
+@pytest.mark.slow
 def test_the_command_chooses_cells_and_says_so(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -167,6 +169,7 @@ def advised(text: str, option: str) -> str:
     return text.split(f"{option} ")[1].split(",")[0].split(";")[0]
 
 
+@pytest.mark.slow
 def test_a_speed_below_that_of_the_waves(tmp_path: Path) -> None:
     """Both ways out are taken as they are typed, run, and are the limit: a little more is refused."""
     path, cells = write(tmp_path), (8, 12)
@@ -192,6 +195,7 @@ def test_a_speed_that_is_no_parameter(tmp_path: Path) -> None:
     swept(solution=write(tmp_path, c0=f"{least:g}"), cells=64)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("solution", ["axis_aligned", "swirl:A=0.01", "bar:n=2", "expanding_ring"])
 def test_solutions_of_the_library(solution: str) -> None:
     """A stiff material makes the waves fast: the same advice, taken as it is typed."""

@@ -39,6 +39,7 @@ def test_cpdi_gives_the_recorded_errors(ppc: int, level: int) -> None:
     assert error("cpdi", CELLS[level], ppc) == pytest.approx(CPDI[ppc][level], rel=1e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ppc", MPM)
 def test_mpm_grows_with_refinement(ppc: int) -> None:
     errors = [error("mpm", cells, ppc) for cells in CELLS[:4]]
@@ -56,6 +57,7 @@ def test_mpm_loses_det_f_with_one_particle_per_cell() -> None:
     assert result.errors == {}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ppc", [4, 9])
 def test_clamped_shear_is_second_order(ppc: int) -> None:
     measured = orders([error("cpdi", cells, ppc, "clamped_shear") for cells in CELLS[:4]])
@@ -63,6 +65,7 @@ def test_clamped_shear_is_second_order(ppc: int) -> None:
     assert max(measured) < 2.3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", ["mpm", "cpdi"])
 def test_small_amplitude_is_second_order_for_both(method: str) -> None:
     # no particle crosses a cell face, so what MPM lacks elsewhere is not its hat functions but the crossings
@@ -70,6 +73,7 @@ def test_small_amplitude_is_second_order_for_both(method: str) -> None:
     assert orders(errors) == pytest.approx([2.0] * 3, abs=0.06)
 
 
+@pytest.mark.slow
 def test_linear_elasticity_ends_on_a_floor_of_the_size_of_the_strain() -> None:
     exact = [error("cpdi", cells, 4, "axis_aligned:A=0.0001") for cells in (32, 64)]
     linear = [error("cpdi", cells, 4, "axis_aligned:A=0.0001", "linear_elastic") for cells in (32, 64)]

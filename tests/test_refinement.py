@@ -191,6 +191,7 @@ def test_labels_tell_them_apart(axis: str, two: tuple[Any, ...], orders: tuple[f
     assert [str(value) in text for text, value in zip(told, two, strict=True)] == [True, True]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("axis", "two", "orders"), AXES[:2], ids=[name for name, _, _ in AXES[:2]])
 def test_document_tables_and_page_name_both(
     axis: str, two: tuple[Any, ...], orders: tuple[float, ...], tmp_path: Path

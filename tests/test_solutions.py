@@ -114,6 +114,7 @@ def test_residual_of_the_momentum_balance(text: str) -> None:
     assert moves > 0
 
 
+@pytest.mark.slow
 @every
 def test_the_kernel_gives_what_numpy_gives(text: str) -> None:
     solution, law, exact = made(text)
@@ -125,6 +126,7 @@ def test_the_kernel_gives_what_numpy_gives(text: str) -> None:
             np.testing.assert_allclose(values, other, rtol=0, atol=1e-12 * size, err_msg=name)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("R", "angle", "t", "b"),
     [
@@ -248,6 +250,7 @@ def test_extremes_of_the_swirl() -> None:
     assert max(np.abs(found["shear"])) == pytest.approx(0.877, abs=2e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("A", [-1.499, 0.0, 0.75, 1.499])
 @pytest.mark.parametrize("B", [-0.299, 0.0, 0.299])
 def test_the_swirl_stays_invertible_inside_its_bounds(A: float, B: float) -> None:

@@ -319,6 +319,7 @@ def test_missing_arrays(store: Store) -> None:
         store.arrays(RUN.digest)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("keep", [0, 100, -30])
 def test_broken_arrays(store: Store, keep: int) -> None:
     """Cut to nothing, to its first bytes, and without the end of its directory."""

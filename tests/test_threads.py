@@ -185,6 +185,7 @@ def after(method: str, solution: str, threads: int, **scheme: str) -> dict[str, 
 needs_two = pytest.mark.skipif(numba.config.NUMBA_NUM_THREADS < 2, reason="one processor")
 
 
+@pytest.mark.slow
 @needs_two
 @pytest.mark.parametrize("solution", PLANE)
 @every_basis

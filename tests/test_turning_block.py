@@ -102,6 +102,7 @@ def test_the_printed_block_swaps_its_stresses() -> None:
     np.testing.assert_allclose(mean["zz"], mean["own_xx"], atol=0.02)
 
 
+@pytest.mark.slow
 def test_a_smaller_block_is_closer_and_the_rest_is_inertia() -> None:
     """The mean vertical stress misses by the inertial fraction, which the same box at rest shows without any turn."""
     away = {}

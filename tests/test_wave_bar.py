@@ -35,6 +35,7 @@ def test_the_frequency_of_a_sine_is_measured(omega: float) -> None:
     assert np.isnan(frequency(t[0], np.ones(101)))  # no zero, no frequency
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", ["mpm", "cpdi", "gimp"])
 @pytest.mark.parametrize("courant", [0.1, 0.4, 0.6])
 def test_the_error_is_that_of_the_closed_form(method: str, courant: float) -> None:
