@@ -11,10 +11,10 @@ from typing import Any
 from mpm_verify.cases.harness.build import Asked
 from mpm_verify.cases.judging.records import Expectation
 from mpm_verify.cases.mms.expectations import JUDGED_QUANTITY, expected
-from mpm_verify.cases.mms.external import column_map
-from mpm_verify.cases.mms.external.command import PYTHON, program, version
 from mpm_verify.cases.mms.run import AXES, NORMS, QUANTITIES, QUICK, SOLID, Result, Run
 from mpm_verify.cases.mms.stability import check_time_steps
+from mpm_verify.cases.solvers import column_map
+from mpm_verify.cases.solvers.command import PYTHON, program, version
 from mpm_verify.mms.cells import fitting, ratio
 from mpm_verify.mms.discretisation import dimension
 from mpm_verify.mms.energy import check_energy
@@ -96,7 +96,7 @@ def version_of(solver: str) -> str:
     """Version of a solver of somebody else: a command, or a Python function."""
     if not solver.startswith(PYTHON):
         return version(solver)
-    from mpm_verify.cases.mms.external.callables import version as of_function
+    from mpm_verify.cases.solvers.callables import version as of_function
 
     return of_function(solver)
 
