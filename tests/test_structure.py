@@ -133,7 +133,7 @@ def test_rooms_import_each_other_in_one_direction(floor: str) -> None:
 
 
 def test_the_rooms_of_the_cases() -> None:
-    """Judging is below the harness, the contract of own solvers above it, all are below the cases; no other room is there.
+    """Judging is below the harness, own solvers above it, all are below the cases, and no other room is there.
 
     No case knows another.
     """
