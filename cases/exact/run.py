@@ -71,8 +71,8 @@ class Run(RunRecord):
 
     @property
     def cost(self) -> float:
-        """Particle updates that take as long: a third of a second."""
-        return 5e5
+        """Particle updates that take as long: a third of a second; of an own solver a start, and perhaps a compiler."""
+        return 4e6 if self.solver else 5e5
 
     @property
     def particles(self) -> int:
@@ -85,7 +85,9 @@ class Run(RunRecord):
         return 210
 
     def __str__(self) -> str:
-        return f"{self.method}, {self.material}" + (f", {self.test}" if self.solver else "")
+        if self.solver:
+            return f"{self.method}, {self.test}" + f", {self.material}" * (self.material != type(self).material)
+        return f"{self.method}, {self.material}"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -109,9 +109,11 @@ REASONS = {
 }
 
 
-ALL_HELD: Mapping[str, str] = {**HELD, **others.HELD}
-ALL_PARTS: Mapping[str, str] = {**PARTS, **others.PARTS}
-ALL_REASONS: Mapping[str, str] = {**REASONS, **others.REASONS}
+ALL_HELD: Mapping[str, str] = HELD | others.HELD
+ALL_PARTS: Mapping[str, str] = {str(part): text for table in (PARTS, others.PARTS) for part, text in table.items()}
+ALL_REASONS: Mapping[str, str] = {
+    str(reason): text for table in (REASONS, others.REASONS) for reason, text in table.items()
+}
 ALL_HEADINGS = HEADINGS | others.HEADINGS
 
 
