@@ -32,16 +32,16 @@ NEO = "neo_hookean"
 FAR = 1e6  # times its bound: what a planted fault is seen by
 
 # which tests see a fault, of a few that together see all that the whole battery sees
-ASKED = ("translate", "fall_growing", "sums", "keep", "affine_strained", "force", "divergence_x", "path_press")
+ASKED = ("translate", "throw_growing", "sums", "keep", "affine_strained", "force", "divergence_x", "path_press")
 STRAINS = {"affine_strained", "force", "path_press"}
 SEEN: dict[str, set[str]] = {
     "none": set(),
     "V as it should be": set(),
-    "force never added": {"fall_growing", "sums", "force"},
-    "force of the other sign": {"fall_growing", "sums", "force"},
-    "force a fifth too large": {"fall_growing", "sums", "force"},
+    "force never added": {"throw_growing", "sums", "force"},
+    "force of the other sign": {"throw_growing", "sums", "force"},
+    "force a fifth too large": {"throw_growing", "sums", "force"},
     "force at x": {"force"},
-    "force one step late": {"fall_growing"},
+    "force one step late": {"throw_growing"},
     "stress twice as large": {"divergence_x"},
     "FLIP ratio ignored (PIC)": {"keep"},
     "symmetric part of L alone": STRAINS,
@@ -49,7 +49,7 @@ SEEN: dict[str, set[str]] = {
     "factors of F in the other order": STRAINS,
     "F advanced twice": STRAINS,
     "F written by columns": {*STRAINS, "sums", "divergence_x"},
-    "no half-step start": {"fall_growing", "sums", "force", "divergence_x"},
+    "no half-step start": {"throw_growing", "sums", "force", "divergence_x"},
     "dt one per cent too long": set(ASKED) - {"keep"},
     "sigma one step late": {*STRAINS, "sums"},
     "sigma of the other sign": {*STRAINS, "sums", "divergence_x"},
@@ -183,9 +183,9 @@ def without(*names: str) -> Callable[[Case], Any]:
 
 
 def test_what_is_not_there_is_told_and_not_judged() -> None:
-    tested = outcomes("fall", without("F", "sigma"))
+    tested = outcomes("throw", without("F", "sigma"))
     assert {one.name: one.reason for one in tested if one.reason} == {
-        "fall F": Left.NO_COLUMN, "fall sigma": Left.NO_COLUMN,
+        "throw F": Left.NO_COLUMN, "throw sigma": Left.NO_COLUMN,
     }  # fmt: skip
     assert not missed(tested)
 
@@ -197,7 +197,7 @@ def in_single(case: Case) -> Any:
 
 
 def test_digits_of_the_files_make_the_bound() -> None:
-    tested = outcomes("fall", in_single)
+    tested = outcomes("throw", in_single)
     assert not missed(tested)
     assert all(1e-8 < one.bound < 1e-5 for one in tested)
     assert max(one.residual for one in tested) > 1e-9
@@ -210,7 +210,7 @@ def test_a_level_that_is_not_exact_is_not_asked() -> None:
     reasons = {one.name: one.reason for one in outcomes("force", verlet)}
     assert reasons["force v"] == reasons["force F"] == reasons["force sigma"] == Left.LEVEL
     assert not reasons["force x"]
-    assert missed(outcomes("fall", verlet)) != []  # v is that of half a step before
+    assert missed(outcomes("throw", verlet)) != []  # v is that of half a step before
 
 
 @pytest.mark.parametrize(
@@ -239,17 +239,17 @@ def test_an_answer_by_command(fault: str, code: int, said: str, verify: Call, tm
 
 
 def test_a_study_of_a_function(tmp_path: Path) -> None:
-    done = mv.study("exact", solver=toy("force one step late"), test=["fall", "fall_growing"], out=tmp_path)
+    done = mv.study("exact", solver=toy("force one step late"), test=["throw", "throw_growing"], out=tmp_path)
     assert done.exit_code == 1
     failed = {check.name.partition(":")[0] for check in done.record.analysis.checks if check.outcome != "PASS"}
-    assert failed == {"fall_growing x", "fall_growing v"}
+    assert failed == {"throw_growing x", "throw_growing v"}
 
 
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["--test", "fall"], "--test is for a solver of your own"),
-        (["--solver", "true {case} {out}", "--test", "fal"], "did you mean fall"),
+        (["--test", "throw"], "--test is for a solver of your own"),
+        (["--solver", "true {case} {out}", "--test", "thro"], "did you mean throw"),
         (["--solver", "true {case} {out}", "--material", "linear_elastic"], "small strains"),
         (["--solver", "true {case}"], "{out}"),
     ],

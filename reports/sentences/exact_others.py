@@ -9,12 +9,12 @@ HEADINGS = {
 }
 HELD = {
     "translate": "a body without forces moves on through the cells: x, v, and F = I, σ = 0",
-    "fall": "free fall and throw under a constant force",
-    "fall_growing": "free fall under a force that grows in time",
+    "throw": "free fall and throw under a constant force",
+    "throw_growing": "free fall under a force that grows in time",
     "sums": "a strained, shaken body: its centre of mass falls freely; σ and V are those of the F that is written",
     "keep": "no force: each particle keeps a velocity of its own for a step",
     "rest": "a uniform stress at rest: nothing moves inside",
-    "affine": "an affine velocity from F = I: x, v, F = I + dt grad v, and its σ",
+    "affine_unstrained": "an affine velocity from F = I: x, v, F = I + dt grad v, and its σ",
     "affine_strained": "an affine velocity from a sheared and turned F: x, v, (I + dt grad v) F, and its σ",
     "turn": "a rigid turn of a strained body under its centripetal force",
     "force": "a force that is affine in X, of a strained body",
@@ -26,8 +26,8 @@ HELD = {
 }
 PARTS = {
     Cause.OWN_TIME: "dt, the number of steps, which step is written, or the update of x",
-    Cause.OWN_FORCE: "the body force: its sign, size, time level, and whether it is taken at X; or v at the start: that of "
-    "−dt/2 where v is half a step before x",
+    Cause.OWN_FORCE: "the body force: its sign, size, time level, and whether it is taken at X; or v at the start: that "
+    "of −dt/2 where v is half a step before x",
     Cause.OWN_SUMS: "the sums over the nodes, weights whose gradients do not add to nothing, damping, or nodes that "
     "are left out or held",
     Cause.OWN_FLIP: "the fraction of FLIP, or a damping; for PIC, APIC and blends give --flip no",

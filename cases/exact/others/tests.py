@@ -58,12 +58,12 @@ SPIN: Matrix = ((0.0, -ANGLE), (ANGLE, 0.0))
 TURNING = product(SPIN, STRAINED)
 CASES = {
     "translate": Case("rigid", Motion(V=(0.3137, -0.2293), cells=FEW, steps=12)),
-    "fall": Case("rigid", Motion(V=(0.2137, -0.1193), G=PULL, cells=FEW, steps=12)),
-    "fall_growing": Case("rigid", Motion(V=(0.2137, -0.1193), G=PULL, J=(0.004, 0.006), cells=FEW, steps=12)),
+    "throw": Case("rigid", Motion(V=(0.2137, -0.1193), G=PULL, cells=FEW, steps=12)),
+    "throw_growing": Case("rigid", Motion(V=(0.2137, -0.1193), G=PULL, J=(0.004, 0.006), cells=FEW, steps=12)),
     "sums": Case("rigid", Motion(F=STRAINED, V=DRIFT, G=PULL, cells=FEW, steps=8), "shaken"),
     "keep": Case("rigid", Motion(V=DRIFT, cells=FEW), "kept"),
     "rest": Case("affine", Motion(F=STRAINED)),
-    "affine": Case("affine", Motion(M=RATE, V=DRIFT)),
+    "affine_unstrained": Case("affine", Motion(M=RATE, V=DRIFT)),
     "affine_strained": Case("affine", Motion(F=STRAINED, M=RATE, V=DRIFT)),
     "turn": Case("affine", Motion(F=STRAINED, M=TURNING, A=product(SPIN, TURNING), V=DRIFT)),
     "force": Case("affine", Motion(F=STRAINED, A=((0.006, 0.01), (-0.008, 0.004)), G=PULL)),
