@@ -146,7 +146,7 @@ def test_every_fault_has_its_row() -> None:
 @pytest.mark.parametrize(
     ("method", "transfer", "stress"),
     [("mpm", "pic", "usl"), ("mpm", "apic", "musl"), ("gimp", "flip", "musl"), ("cpdi", "flip", "usl"),
-     ("bspline2", "flip", "usl"), ("bspline3", "apic", "usl"), ("mpm", "flip", "usf")],
+     ("bspline2", "flip", "usl"), ("bspline3", "apic", "usl"), ("mpm", "flip", "usf"), ("cpgimp", "flip", "usl"), ("gimp", "flip", "usl")],
 )  # fmt: skip
 def test_other_methods_are_exact_too(test: str, method: str, transfer: str, stress: str) -> None:
     tested = outcomes(test, reference(method, transfer, stress), flip=transfer == "flip")
