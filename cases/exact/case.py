@@ -116,17 +116,23 @@ def examine(study: Study[Run], results: Mapping[str, Result], store: Store) -> E
 def checked(result: Result) -> list[Check]:
     """Checks of one run: the worst of each test that was asked; of an answer of somebody else each quantity."""
     if result.failure:
-        run = result.run
-        return [Check(group(run.test), str(run), nan, 0.0, "at_most", "", failure=result.failure)]
-    worst: dict[str, Tested] = {}
+        return [Check(group(result.run.test), str(result.run), nan, 0.0, "at_most", "", failure=result.failure)]
+    worst = dict[str, Tested]()
     for one in result.tested:
         key = one.name if result.run.solver else one.test
         if not one.reason and (key not in worst or one.over > worst[key].over):
             worst[key] = one
     return [
-        Check(group(one.test), f"{one.name}: {result.run}", one.residual, one.bound, "at_most", str(one.points_to))
+        Check(
+            group(one.test), f"{one.name}: {told(result.run)}", one.residual, one.bound, "at_most", str(one.points_to)
+        )
         for one in worst.values()
     ]
+
+
+def told(run: Run) -> str:
+    """Run as a test of it tells it: without the test."""
+    return str(run).replace(f", {run.test}", "") if run.test else str(run)
 
 
 def group(test: str) -> str:
@@ -153,12 +159,13 @@ def remarks(done: Sequence[Result], checks: Sequence[Check]) -> list[Remark]:
         return [Remark(ExactRemark.HOLDS, numbers | {"solver": bool(done[0].run.solver)})]
     failed = [(result, one) for result in done for one in result.tested if not one.passed]
     found = [Remark(ExactRemark.FAILS, {"failed": len(failed), "asked": len(asked)})] if failed else []
-    for test in dict.fromkeys(one.test for _, one in failed):
-        mine = [(result, one) for result, one in failed if one.test == test]
+    own = bool(done[0].run.solver)  # whose tests point to the same part together
+    for key in dict.fromkeys(one.points_to if own else one.test for _, one in failed):
+        mine = [(result, one) for result, one in failed if key in (one.points_to if own else one.test,)]
         result, worst = max(mine, key=lambda pair: pair[1].over)
         numbers = {
-            "test": test, "part": worst.points_to, "failed": len(mine), "name": worst.name, "run": str(result.run),
-            "residual": worst.residual, "bound": worst.bound,
+            "test": worst.test, "part": worst.points_to, "failed": len(mine), "name": worst.name,
+            "run": told(result.run), "residual": worst.residual, "bound": worst.bound,
         }  # fmt: skip
         found.append(Remark(ExactRemark.POINTS, numbers))
     return found
@@ -174,7 +181,7 @@ def held(done: Sequence[Result]) -> list[Remark]:
             result, worst = max(asked, key=lambda pair: pair[1].over)
             numbers: dict[str, float | str] = {
                 "test": test, "part": worst.points_to, "asked": len(asked), "residual": worst.residual,
-                "bound": worst.bound, "name": worst.name, "run": str(result.run),
+                "bound": worst.bound, "name": worst.name, "run": told(result.run),
                 "failed": sum(not one.passed for _, one in asked),
             }  # fmt: skip
             found.append(Remark(ExactRemark.HELD, numbers, group(test)))

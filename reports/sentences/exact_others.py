@@ -26,8 +26,7 @@ HELD = {
 }
 PARTS = {
     Cause.OWN_TIME: "dt, the number of steps, which step is written, or the update of x",
-    Cause.OWN_FORCE: "the body force: its sign, size, time level, and whether it is taken at X; or v at the start: "
-    "that of −dt/2 where v is half a step before x",
+    Cause.OWN_FORCE: "the body force (sign, size, time level, taken at X), or the level of v at the start",
     Cause.OWN_SUMS: "the sums over the nodes, weights whose gradients do not add to nothing, damping, or nodes that "
     "are left out or held",
     Cause.OWN_FLIP: "the fraction of FLIP, or a damping; for PIC, APIC and blends give --flip no",

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -29,6 +30,7 @@ OTHER_CAUSES = {
     ("graded_x", "x"): Cause.OWN_INNER, ("graded_x", "v"): Cause.OWN_INNER,
     ("graded_y", "x"): Cause.OWN_INNER, ("graded_y", "v"): Cause.OWN_INNER,
 }  # fmt: skip
+DERIVED = ("sigma", "V")  # from F
 Expected = Floats | Left
 
 
@@ -92,22 +94,43 @@ def judged(test: str, answer: Answered) -> list[Tested]:
 
 
 def residual(answer: Answered, quantity: str, step: int, frame: Frame) -> float | Left:
-    """Largest distance of a quantity in a frame from what is exact, over its scale; or why it is not asked."""
+    """Largest distance of a quantity in a frame from what is exact, over its scale; or why it is not asked.
+
+    A stress, or a volume, is held against that of the F which is written beside it, if it is there.
+    """
     case, t = answer.case, step * answer.case.motion.dt
     given, scale = frame.fields[quantity], answer.scales[quantity]
     if quantity == "X":
         return off(given, answer.X, scale)
-    if quantity in ("sigma", "V") and "F" in frame.fields and case.state == "shaken":
-        return of_F(answer, quantity, given, frame.fields["F"])
+    chosen = judged_particles(answer)
+    if quantity in DERIVED and "F" in frame.fields:
+        F = frame.fields["F"][chosen].reshape(-1, 2, 2)
+        return off(given[chosen], derived(answer, quantity, F, chosen), scale) if positive(F) else FAILED
     if case.state == "shaken":
         return summed(answer, quantity, t, given)
     expected = {"x": position, "v": velocity}.get(quantity, strained)(answer, quantity, t)
-    if isinstance(expected, Left):
-        return expected
-    chosen = (
-        case.motion.deep(positions_at_start(case)) if case.state[:6] == "graded" else case.motion.compared(answer.X)
-    )
-    return off(given[chosen], expected[chosen], scale)
+    return expected if isinstance(expected, Left) else off(given[chosen], expected[chosen], scale)
+
+
+def judged_particles(answer: Answered) -> Any:
+    """Which particles are held: all, or those deep inside."""
+    case = answer.case
+    if case.state.startswith("graded"):
+        return case.motion.deep(positions_at_start(case))
+    return np.ones(len(answer.X), dtype=bool) if case.state else case.motion.compared(answer.X)
+
+
+def positive(F: Floats) -> bool:
+    """Whether there is a stress of all F (P,2,2)."""
+    return bool((np.linalg.det(F) > 0).all())
+
+
+def derived(answer: Answered, quantity: str, F: Floats, chosen: Any) -> Floats:
+    """Stresses (n,4), or volumes (n,1), of F (n,2,2) of some particles."""
+    if quantity == "V":
+        found: Floats = (answer.case.exported.particles["V0"][chosen] * np.linalg.det(F))[:, None]
+        return found
+    return columns(*cauchy(answer.case.material, F))
 
 
 def positions_at_start(case: Asked) -> Floats:
@@ -157,18 +180,7 @@ def strained(answer: Answered, quantity: str, t: float) -> Expected:
         F = np.broadcast_to(one, (len(answer.X), 2, 2))
     if quantity == "F":
         return np.asarray(F.reshape(-1, 4))
-    return columns(*cauchy(case.material, F)) if quantity == "sigma" else (given["V0"] * np.linalg.det(F))[:, None]
-
-
-def of_F(answer: Answered, quantity: str, given: Floats, F: Floats) -> float:
-    """Distance of stresses or volumes from those of the F that is written beside them."""
-    square = F.reshape(-1, 2, 2)
-    J = np.linalg.det(square)
-    if not (J > 0).all():
-        return FAILED
-    if quantity == "V":
-        return off(given[:, 0], answer.case.exported.particles["V0"] * J, answer.scales["V"])
-    return off(given, columns(*cauchy(answer.case.material, square)), answer.scales["sigma"])
+    return derived(answer, quantity, F, slice(None))
 
 
 def summed(answer: Answered, quantity: str, t: float, given: Floats) -> float | Left:

@@ -6,9 +6,9 @@ shape functions that are those of the next node, shifted, and that reproduce wha
     f_i = -sum V sigma dN_i = V_cell (sigma_xx', sigma_xy')
 
 at each node inside, whatever sigma_yy is: for points that are a cell apart, sum dN = 0 and sum x dN = -1 hold apart
-from those between them. All move with the same acceleration (sigma_xx', sigma_xy') / rho. F stretches so far that half sides
-at reference are below a quarter of a cell, and domains that keep them, or stretch along the axes, have the weights of
-points: with those of GIMP that differ from particle to particle the sums would not be these.
+from those between them. All move with the same acceleration (sigma_xx', sigma_xy') / rho. F stretches so far
+that half sides at reference are below a quarter of a cell, and domains that keep them have the weights of points: with
+domains of GIMP that differ from particle to particle the sums would not be these. With those of cpGIMP they are not.
 """
 
 from collections.abc import Callable
