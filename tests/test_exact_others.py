@@ -16,8 +16,9 @@ from fixtures_faults import FAULTS, faulty, toy
 
 import mpm_verify as mv
 from mpm_verify.cases.exact.others.judge import Answered, judged
+from mpm_verify.cases.exact.others.names import TESTS, Cause, Left
 from mpm_verify.cases.exact.others.state import Asked, asked
-from mpm_verify.cases.exact.others.tests import CASES, Cause, Left
+from mpm_verify.cases.exact.others.tests import CASES
 from mpm_verify.cases.solvers.asking import ask
 from mpm_verify.cases.solvers.callables import Case, register
 from mpm_verify.mms.constitutive.tested import Tested
@@ -267,8 +268,9 @@ def test_bad_input_is_one_line(words: list[str], said: str, verify: Call) -> Non
 
 
 def test_all_have_their_words() -> None:
-    assert set(exact_others.HELD) == set(CASES)
-    assert set(exact_others.HEADINGS) == {case.group for case in CASES.values()}
+    assert list(CASES) == list(TESTS)
+    assert set(exact_others.HELD) == set(TESTS)
+    assert set(exact_others.HEADINGS) == set(TESTS.values())
     assert set(exact_others.PARTS) == set(Cause)
     assert set(exact_others.REASONS) == set(Left)
     assert not set(exact_others.HELD) & set(exact.HELD)

@@ -13,7 +13,7 @@ from math import nan
 from typing import Any
 
 from mpm_verify.cases.exact.groups import group_of
-from mpm_verify.cases.exact.others.tests import CASES
+from mpm_verify.cases.exact.others.names import TESTS
 from mpm_verify.cases.exact.run import AXES, OTHERS, QUICK, Result, Run
 from mpm_verify.cases.harness.build import Asked
 from mpm_verify.cases.harness.checks import Check, Examination, Remark
@@ -137,7 +137,7 @@ def told(run: Run) -> str:
 
 def group(test: str) -> str:
     """Group of a test, of the reference solver or of somebody else's."""
-    return CASES[test].group if test in CASES else group_of(test)
+    return TESTS[test] if test in TESTS else group_of(test)
 
 
 def of_answers(done: Sequence[Result]) -> list[Remark]:

@@ -3,13 +3,13 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from mpm_verify.cases.exact.others.tests import CASES
+from mpm_verify.cases.exact.others.names import TESTS
 from mpm_verify.cases.harness.study import ResultRecord, RunRecord, axis
 from mpm_verify.mms.constitutive.tested import Tested
 from mpm_verify.solver.plugins import MATERIALS, METHODS, available, meant
 
 AXES = {"method": tuple(available(METHODS)), "material": tuple(available(MATERIALS))}
-OTHERS = {"material": ("neo_hookean",), "test": tuple(CASES)}  # of a solver of somebody else
+OTHERS = {"material": ("neo_hookean",), "test": tuple(TESTS)}  # of a solver of somebody else
 QUICK = {"method": ("cpdi",), "material": ("neo_hookean", "mohr_coulomb")}
 
 
@@ -22,7 +22,7 @@ class Run(RunRecord):
 
     method: str = axis("cpdi", "Basis of the method.", METHODS)
     material: str = axis("neo_hookean", "Constitutive model.", MATERIALS)
-    test: str = axis("", "Tests of a solver of your own; usual are all.", choices=tuple(CASES))
+    test: str = axis("", "Tests of a solver of your own; usual are all.", choices=tuple(TESTS))
     solver: str = axis(
         "", "Solver of your own: a command such as './mine {case} {out}', see docs/own-solver.md.", whole=True
     )
@@ -35,8 +35,8 @@ class Run(RunRecord):
     case: ClassVar[str] = "exact"
 
     def __post_init__(self) -> None:
-        if self.test and self.test not in CASES:
-            raise ValueError(f"no test {self.test!r}{meant(self.test, CASES)}; choose from {', '.join(CASES)}")
+        if self.test and self.test not in TESTS:
+            raise ValueError(f"no test {self.test!r}{meant(self.test, TESTS)}; choose from {', '.join(TESTS)}")
         if self.precision not in ("double", "single"):
             raise ValueError(f"precision = {self.precision!r} must be double or single")
         if not (self.time_limit > 0 and self.memory_limit >= 0):

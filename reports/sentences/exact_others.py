@@ -1,6 +1,6 @@
 """Words on the exactness battery of a solver of somebody else: what each test holds, and what it points to."""
 
-from mpm_verify.cases.exact.others.tests import Cause, Left
+from mpm_verify.cases.exact.others.names import Cause, Left
 
 HEADINGS = {
     "rigid": "Bodies that move without strain",

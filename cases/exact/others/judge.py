@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from mpm_verify.cases.exact.others.names import Cause, Left
 from mpm_verify.cases.exact.others.state import Asked
-from mpm_verify.cases.exact.others.tests import Cause, Left
 from mpm_verify.cases.solvers.answer import Frame
 from mpm_verify.cases.solvers.asking import positions
 from mpm_verify.cases.solvers.levels import Levels
