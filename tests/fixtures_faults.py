@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 
 from mpm_verify.cases.mms.exact import manufactured
-from mpm_verify.cases.mms.external.answer import read
-from mpm_verify.cases.mms.external.callables import Case
 from mpm_verify.cases.mms.external.hints import hints
-from mpm_verify.cases.mms.external.levels import levels
+from mpm_verify.cases.solvers.answer import read
+from mpm_verify.cases.solvers.callables import Case
+from mpm_verify.cases.solvers.levels import levels
 from mpm_verify.mms.export.case import Exported, Names, export
 from mpm_verify.mms.export.record import CaseRecord
 from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS, create

@@ -53,11 +53,18 @@ SAMPLES: dict[str, dict[str, str]] = {  # of each case two values of each field,
         "material": "mohr_coulomb,ubcsand", "test": "biaxial,isotropic", "stress": "5000,10000", "steps": "100,200",
         "path": "{here}/one.csv,{here}/two.csv", "units": "percent,fraction",
     },
+    "exact": {
+        "method": "cpdi,gimp", "material": "neo_hookean,hypoelastic", "test": "throw,turn",
+        "solver": f"{sys.executable} {{{{case}}}} {{{{out}}}}", "solver_version": "1,2",
+        "columns": MAP.replace("{", "{{").replace("}", "}}"), "precision": "double,single", "flip": "yes,no",
+        "time_limit": "60,120", "memory_limit": "0,1000",
+    },
     "objectivity": {
         "L": "1,2", "E": "5e5,1e6", "nu": "0.3,0.25", "rho0": "2650,2000", "g": "10,9.81", "cells": "8,4",
         "ppc": "4,9", "courant": "0.4,0.2", "rate": "jaumann,truesdell", "frame": "no,yes", "part": "block,kinematic",
     },
 }  # fmt: skip
+OTHER = {"solver": f"{sys.executable} {{{{case}}}} {{{{out}}}}"}
 WITH: dict[tuple[str, str], dict[str, str]] = {  # what else has to be asked for
     ("element", "path"): {"test": "path"},
     ("element", "units"): {"test": "path", "path": "{here}/one.csv"},
@@ -65,10 +72,12 @@ WITH: dict[tuple[str, str], dict[str, str]] = {  # what else has to be asked for
     ("mms", "dim"): {"solver": f"{sys.executable} {{{{case}}}} {{{{out}}}}"},
     ("mms", "precision"): {"solver": f"{sys.executable} {{{{case}}}} {{{{out}}}}"},
     ("mms", "columns"): {"solver": f"{sys.executable} {{{{case}}}} {{{{out}}}}"},
+    **{("exact", name): OTHER for name in ("test", "columns", "precision", "flip", "solver_version")},
     ("mms", "solver_version"): {"solver": f"{sys.executable} {{{{case}}}} {{{{out}}}}"},
 }
 UNNAMED = ("order", "time_limit", "memory_limit")  # fields that say nothing of the numbers
 COARSE = {"mms": {"cells": "8,16", "ppc": "4"}, "wave_bar": {"cells": "8,16"}, "column": {"cells": "4", "ppc": "4"}}
+COARSE["exact"] = {"method": "cpdi", "material": "neo_hookean"}
 COMPUTED = [case for case in available(CASES) if not case_named(case).Run.given]  # numbers of a table have no axes
 EVERY = [(case, item.name) for case in COMPUTED for item in fields(case_named(case).Run)]
 
@@ -269,7 +278,7 @@ def test_another_value_is_another_folder(case: str, field: str, here: str) -> No
             {"solution": ("bar",)},
             "column has no axis 'solution' (did you mean duration?); it has ",
         ),
-        ("beam", {}, "no case 'beam'; choose from any_code, column, element, mms"),
+        ("beam", {}, "no case 'beam'; choose from any_code, column, element, exact, mms"),
         ("mms", {"cells": (8, 1)}, "cells = 1 cannot be run; choose whole numbers from 2 to 4096"),
         ("mms", {"cells": ("8",)}, "cells = '8': input should be a valid integer"),
         ("mms", {"cells": (True,)}, "cells = True: input should be a valid integer"),

@@ -22,9 +22,9 @@ from mpm_verify.cases.mms.digits.make import HEAD, row
 from mpm_verify.cases.mms.digits.records import Against, Agreement, Alike, Compared, Parting
 from mpm_verify.cases.mms.digits.reference import Scheme, laid_out, reference, run_frames, schemes
 from mpm_verify.cases.mms.digits.table import CASES, CELLS, Case, agreement, stored, table, telling
-from mpm_verify.cases.mms.external.callables import Case as Given
-from mpm_verify.cases.mms.external.callables import register
 from mpm_verify.cases.mms.run import Run
+from mpm_verify.cases.solvers.callables import Case as Given
+from mpm_verify.cases.solvers.callables import register
 from mpm_verify.reports.export.digits import VERSION, document, schema
 from mpm_verify.reports.sentences import digits as words
 from mpm_verify.solver._jit import use_threads

@@ -13,8 +13,8 @@ import pytest
 from fixtures_command import Call, caller, one_line
 from test_own_solver import HEAD, STEPS, X, arrays, csv, points, rows
 
-from mpm_verify.cases.mms.external.answer import Frame, read
-from mpm_verify.cases.mms.external.levels import Levels, levels
+from mpm_verify.cases.solvers.answer import Frame, read
+from mpm_verify.cases.solvers.levels import Levels, levels
 from mpm_verify.reports.sentences import failures
 from mpm_verify.solver.failure import FailureKind, RunFailed
 

@@ -13,12 +13,12 @@ from fixtures_command import Call, caller, one_line
 
 import mpm_verify as mv
 from mpm_verify.cases.harness.build import Asked, build
-from mpm_verify.cases.mms.external import column_map
-from mpm_verify.cases.mms.external.answer import Frame
-from mpm_verify.cases.mms.external.answer import read as read_usual
 from mpm_verify.cases.mms.external.errors import compare
-from mpm_verify.cases.mms.external.levels import Levels
-from mpm_verify.cases.mms.external.mapped import read
+from mpm_verify.cases.solvers import column_map
+from mpm_verify.cases.solvers.answer import Frame
+from mpm_verify.cases.solvers.answer import read as read_usual
+from mpm_verify.cases.solvers.levels import Levels
+from mpm_verify.cases.solvers.mapped import read
 from mpm_verify.mms.manufacture import manufacture
 from mpm_verify.reports.sentences import failures
 from mpm_verify.solver.failure import FailureKind, RunFailed
@@ -315,7 +315,7 @@ def test_displacements_with_six_digits_have_a_lower_floor_than_positions(tmp_pat
 
 
 def test_levels_of_a_map_hold_where_result_json_says_nothing(tmp_path: Path) -> None:
-    from mpm_verify.cases.mms.external.levels import levels
+    from mpm_verify.cases.solvers.levels import levels
 
     usual = mapped(tmp_path, f'files = "p{{step}}.csv"\nv_lag = 0.0\nF_lag = 1.0\n{PLAIN}').levels
     assert levels(tmp_path, usual) == Levels(0.0, 1.0)

@@ -14,9 +14,9 @@ from mpm_verify.cases.harness.build import Asked, build
 from mpm_verify.cases.harness.study_file import study_of
 from mpm_verify.cases.mms.case import canonical
 from mpm_verify.cases.mms.execute import setup
-from mpm_verify.cases.mms.external.callables import Case
 from mpm_verify.cases.mms.external.execute import exported
 from mpm_verify.cases.mms.run import STARTS, Run
+from mpm_verify.cases.solvers.callables import Case
 from mpm_verify.mms.manufacture import manufacture
 from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS, create
 

@@ -19,11 +19,11 @@ from rich.console import Console
 
 import mpm_verify as mv
 from mpm_verify.cases.mms.exact import manufactured
-from mpm_verify.cases.mms.external.answer import Frame
 from mpm_verify.cases.mms.external.balance import Balance, functions
 from mpm_verify.cases.mms.external.evidence import Evidence
 from mpm_verify.cases.mms.external.hints import hints
-from mpm_verify.cases.mms.external.levels import Levels
+from mpm_verify.cases.solvers.answer import Frame
+from mpm_verify.cases.solvers.levels import Levels
 from mpm_verify.reports.export.junit import write_junit
 from mpm_verify.reports.export.summary import markdown
 from mpm_verify.reports.sentences import commands, own_solver

@@ -14,13 +14,13 @@ from fixtures_command import Call, caller, one_line
 
 import mpm_verify as mv
 from mpm_verify.cases.harness.build import Asked, build
-from mpm_verify.cases.mms.external import command
-from mpm_verify.cases.mms.external.answer import Frame, read
-from mpm_verify.cases.mms.external.callables import Case, register, version
 from mpm_verify.cases.mms.external.errors import compare
 from mpm_verify.cases.mms.external.hints import hints
-from mpm_verify.cases.mms.external.levels import Levels, levels
 from mpm_verify.cases.mms.run import STARTS, Run
+from mpm_verify.cases.solvers import command
+from mpm_verify.cases.solvers.answer import Frame, read
+from mpm_verify.cases.solvers.callables import Case, register, version
+from mpm_verify.cases.solvers.levels import Levels, levels
 from mpm_verify.mms.export.case import Names, export
 from mpm_verify.mms.export.start import named
 from mpm_verify.mms.manufacture import manufacture

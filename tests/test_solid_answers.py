@@ -11,11 +11,11 @@ import pytest
 from fixtures_command import Call, caller
 
 import mpm_verify as mv
-from mpm_verify.cases.mms.external.answer import Frame, read
-from mpm_verify.cases.mms.external.callables import Case
 from mpm_verify.cases.mms.external.errors import compare
 from mpm_verify.cases.mms.external.hints import hints
-from mpm_verify.cases.mms.external.levels import Levels
+from mpm_verify.cases.solvers.answer import Frame, read
+from mpm_verify.cases.solvers.callables import Case
+from mpm_verify.cases.solvers.levels import Levels
 from mpm_verify.mms.components import COMPONENTS
 from mpm_verify.mms.export.case import Names, export
 from mpm_verify.mms.manufacture import Manufactured, manufacture

@@ -133,14 +133,18 @@ def test_rooms_import_each_other_in_one_direction(floor: str) -> None:
 
 
 def test_the_rooms_of_the_cases() -> None:
-    """Judging is below the harness, both are below the cases, no case knows another, and no other room is there."""
+    """Judging is below the harness, own solvers above it, all are below the cases, and no other room is there.
+
+    No case knows another.
+    """
     graph = rooms(arrows(package()), "cases")
     assert {"cases.judging", "cases.harness", "cases.mms", "cases.column"} <= set(graph)
     assert {name for name in graph if not list((TOP / name.replace(".", "/")).glob("case.py"))} == {
-        "cases.judging", "cases.harness",
+        "cases.judging", "cases.harness", "cases.solvers",
     }  # fmt: skip
-    below = {"cases.judging": set(), "cases.harness": {"cases.judging"}}
-    assert {name: others - below.get(name, {"cases.judging", "cases.harness"}) for name, others in graph.items()} == {
+    rooms_below = {"cases.judging", "cases.harness", "cases.solvers"}
+    below = {"cases.judging": set(), "cases.harness": {"cases.judging"}, "cases.solvers": {"cases.harness"}}
+    assert {name: others - below.get(name, rooms_below) for name, others in graph.items()} == {
         name: set() for name in graph
     }
 

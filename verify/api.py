@@ -97,7 +97,7 @@ def study(
     from mpm_verify.cases.harness.build import Asked, build
 
     if callable(axes.get("solver")):
-        from mpm_verify.cases.mms.external.callables import register
+        from mpm_verify.cases.solvers.callables import register
 
         axes, jobs = {**axes, "solver": register(axes["solver"])}, 1
     values = {key: list(value) if isinstance(value, list | tuple) else [value] for key, value in axes.items()}

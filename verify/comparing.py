@@ -22,7 +22,7 @@ from mpm_verify.solver.stress_update import check_stress_update
 def run_of(solver: str | Callable[..., Any], solution: str, material: str | None, **more: Any) -> Run:
     """Run of a solver in a case, checked as a study does it. Raises ValueError."""
     if callable(solver):
-        from mpm_verify.cases.mms.external.callables import register
+        from mpm_verify.cases.solvers.callables import register
 
         solver = register(solver)
     named = canonical({"solver": solver, "solution": solution, "material": material or ""})

@@ -7,20 +7,30 @@ reason. The contract of a case is told in cases/harness/contract.py.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
+from math import nan
 from typing import Any
 
 from mpm_verify.cases.exact.groups import group_of
-from mpm_verify.cases.exact.run import AXES, QUICK, Result, Run
+from mpm_verify.cases.exact.others.names import TESTS
+from mpm_verify.cases.exact.run import AXES, OTHERS, QUICK, Result, Run
+from mpm_verify.cases.harness.build import Asked
 from mpm_verify.cases.harness.checks import Check, Examination, Remark
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.cases.harness.study import Study
+from mpm_verify.cases.solvers import column_map
+from mpm_verify.cases.solvers.command import PYTHON, program
+from mpm_verify.cases.solvers.naming import method_of, version_of
 from mpm_verify.mms.constitutive.tested import Tested
-from mpm_verify.solver.plugins import MATERIALS, METHODS, label
+from mpm_verify.mms.energy import check_energy
+from mpm_verify.solver.plugins import MATERIALS, METHODS, create, label
 from mpm_verify.solver.plugins import canonical as canonical_name
 
-__all__ = ["AXES", "QUICK", "ExactAnalysis", "Result", "Run", "canonical", "examine", "title"]
+__all__ = ["AXES", "QUICK", "ExactAnalysis", "Result", "Run", "canonical", "check", "examine", "parts", "title"]
+
+ALONE = ("test", "columns", "precision", "flip")  # fields that the reference solver does not take
+FEW_DIGITS = 1e-14  # rounding of the numbers in a file, over their scale, that is told
 
 
 class ExactRemark(StrEnum):
@@ -30,6 +40,8 @@ class ExactRemark(StrEnum):
     FAILS = "exact.fails"
     POINTS = "exact.points"  # the part of the solver that a failed test points to
     NOT_ASKED = "exact.not_asked"  # a test, how often, and the reason
+    ENDED = "exact.ended"  # how many runs of a solver of somebody else failed
+    DIGITS = "exact.digits"  # of the numbers in its files, where they make the bounds wider
     HELD = "exact.held"  # a test, its largest residual over its bound
 
 
@@ -47,6 +59,8 @@ class ExactAnalysis:
 
 def title(runs: Sequence[Run]) -> str:
     """Title of a study."""
+    if any(run.solver for run in runs):
+        return f"Exactness battery: {' and '.join(dict.fromkeys(program(run.solver) for run in runs))}"
     names = [list(dict.fromkeys(label(getattr(run, axis)) for run in runs)) for axis in ("method", "material")]
     few = [", ".join(one) if len(one) <= 3 else "" for one in names]
     told = [few[0] or f"{len(names[0])} methods", few[1] or f"{len(names[1])} materials"]
@@ -55,9 +69,37 @@ def title(runs: Sequence[Run]) -> str:
 
 def canonical(values: dict[str, Any]) -> dict[str, Any]:
     """Specifications with only the parameters that differ from their defaults."""
+    if values.get("columns"):
+        values["columns"] = column_map.read(values["columns"])
+    if values.get("solver"):
+        values["solver_version"] = values.get("solver_version") or version_of(values["solver"])
+        values["method"] = method_of(values["solver"])
+        values["material"] = canonical_name(MATERIALS, values.get("material", Run.material))
+        return values
     for key, package in {"method": METHODS, "material": MATERIALS}.items():
         values[key] = canonical_name(package, values.get(key, getattr(Run, key)))
     return values
+
+
+def parts(asked: Asked) -> list[Asked]:
+    """Request with all tests and one material of a solver of somebody else, where none are asked for."""
+    if not any(asked.values.get("solver", ())):
+        return [asked]
+    return [replace(asked, values={"method": (Run.method,), **OTHERS, **asked.values}, quick=False)]
+
+
+def check(runs: Sequence[Run]) -> None:
+    """Raise ValueError with one line for options that belong to the other kind of solver, and for a material."""
+    for name in ALONE:
+        if any(getattr(run, name) != getattr(Run, name) and not run.solver for run in runs):
+            raise ValueError(f"--{name.replace('_', '-')} is for a solver of your own; give --solver too")
+    if any(run.columns and run.solver.startswith(PYTHON) for run in runs):
+        raise ValueError("--columns is for files; a Python function returns arrays by our names")
+    for name in dict.fromkeys(run.material for run in runs if run.solver):
+        material = create(MATERIALS, name)
+        check_energy(material)
+        if material.small_strain:
+            raise ValueError(f"{label(name)} is one of small strains; the tests of --solver are of finite strain")
 
 
 def examine(study: Study[Run], results: Mapping[str, Result], store: Store) -> ExactAnalysis:
@@ -66,21 +108,44 @@ def examine(study: Study[Run], results: Mapping[str, Result], store: Store) -> E
     if not done:
         return ExactAnalysis({})
     checks = tuple(check for result in done for check in checked(result))
-    found = (*remarks(done, checks), *held(done))
+    found = (*remarks(done, checks), *of_answers(done), *held(done))
     one = Examination(study.name, study.title, study.command, found, checks, environment=done[0].environment)
     return ExactAnalysis({study.name: one})
 
 
 def checked(result: Result) -> list[Check]:
-    """Checks of one run: the worst of each test that was asked."""
-    worst: dict[str, Tested] = {}
+    """Checks of one run: the worst of each test that was asked; of an answer of somebody else each quantity."""
+    if result.failure:
+        return [Check(group(result.run.test), str(result.run), nan, 0.0, "at_most", "", failure=result.failure)]
+    worst = dict[str, Tested]()
     for one in result.tested:
-        if not one.reason and (one.test not in worst or one.over > worst[one.test].over):
-            worst[one.test] = one
+        key = one.name if result.run.solver else one.test
+        if not one.reason and (key not in worst or one.over > worst[key].over):
+            worst[key] = one
     return [
-        Check(group_of(test), f"{one.name}: {result.run}", one.residual, one.bound, "at_most", str(one.points_to))
-        for test, one in worst.items()
+        Check(
+            group(one.test), f"{one.name}: {told(result.run)}", one.residual, one.bound, "at_most", str(one.points_to)
+        )
+        for one in worst.values()
     ]
+
+
+def told(run: Run) -> str:
+    """Run as a test of it tells it: without the test."""
+    return str(run).replace(f", {run.test}", "") if run.test else str(run)
+
+
+def group(test: str) -> str:
+    """Group of a test, of the reference solver or of somebody else's."""
+    return TESTS[test] if test in TESTS else group_of(test)
+
+
+def of_answers(done: Sequence[Result]) -> list[Remark]:
+    """Remarks on answers of somebody else: how many runs failed, and digits that make the bounds wider."""
+    failed = [result for result in done if result.failure]
+    found = [Remark(ExactRemark.ENDED, {"failed": len(failed), "runs": len(done)})] if failed else []
+    rounding = max((result.values.get("rounding", 0.0) for result in done), default=0.0)
+    return [*found, *([Remark(ExactRemark.DIGITS, {"rounding": rounding})] if rounding > FEW_DIGITS else [])]
 
 
 def remarks(done: Sequence[Result], checks: Sequence[Check]) -> list[Remark]:
@@ -88,16 +153,19 @@ def remarks(done: Sequence[Result], checks: Sequence[Check]) -> list[Remark]:
     missed = [check for check in checks if check.outcome != "PASS"]
     tests = [one for result in done for one in result.tested]
     asked = [one for one in tests if not one.reason]
+    others = [one for one in tests if one.reason]
     if not missed:
-        return [Remark(ExactRemark.HOLDS, {"asked": len(asked), "runs": len(done), "others": len(tests) - len(asked)})]
+        numbers: dict[str, float | str] = {"asked": len(asked), "runs": len(done), "others": len(others)}
+        return [Remark(ExactRemark.HOLDS, numbers | {"solver": bool(done[0].run.solver)})]
     failed = [(result, one) for result in done for one in result.tested if not one.passed]
-    found = [Remark(ExactRemark.FAILS, {"failed": len(failed), "asked": len(asked)})]
-    for test in dict.fromkeys(one.test for _, one in failed):
-        mine = [(result, one) for result, one in failed if one.test == test]
+    found = [Remark(ExactRemark.FAILS, {"failed": len(failed), "asked": len(asked)})] if failed else []
+    own = bool(done[0].run.solver)  # whose tests point to the same part together
+    for key in dict.fromkeys(one.points_to if own else one.test for _, one in failed):
+        mine = [(result, one) for result, one in failed if key in (one.points_to if own else one.test,)]
         result, worst = max(mine, key=lambda pair: pair[1].over)
-        numbers: dict[str, float | str] = {
-            "test": test, "part": worst.points_to, "failed": len(mine), "name": worst.name, "run": str(result.run),
-            "residual": worst.residual, "bound": worst.bound,
+        numbers = {
+            "test": worst.test, "part": worst.points_to, "failed": len(mine), "name": worst.name,
+            "run": told(result.run), "residual": worst.residual, "bound": worst.bound,
         }  # fmt: skip
         found.append(Remark(ExactRemark.POINTS, numbers))
     return found
@@ -113,12 +181,12 @@ def held(done: Sequence[Result]) -> list[Remark]:
             result, worst = max(asked, key=lambda pair: pair[1].over)
             numbers: dict[str, float | str] = {
                 "test": test, "part": worst.points_to, "asked": len(asked), "residual": worst.residual,
-                "bound": worst.bound, "name": worst.name, "run": str(result.run),
+                "bound": worst.bound, "name": worst.name, "run": told(result.run),
                 "failed": sum(not one.passed for _, one in asked),
             }  # fmt: skip
-            found.append(Remark(ExactRemark.HELD, numbers, group_of(test)))
+            found.append(Remark(ExactRemark.HELD, numbers, group(test)))
         why = [one.reason for _, one in every if one.test == test and one.reason]
         for reason in dict.fromkeys(why):
             counted: dict[str, float | str] = {"test": test, "reason": reason, "count": why.count(reason)}
-            found.append(Remark(ExactRemark.NOT_ASKED, counted, group_of(test)))
+            found.append(Remark(ExactRemark.NOT_ASKED, counted, group(test)))
     return found

@@ -3,7 +3,6 @@
 The contract of a case is told in cases/harness/contract.py.
 """
 
-import re
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
@@ -11,10 +10,11 @@ from typing import Any
 from mpm_verify.cases.harness.build import Asked
 from mpm_verify.cases.judging.records import Expectation
 from mpm_verify.cases.mms.expectations import JUDGED_QUANTITY, expected
-from mpm_verify.cases.mms.external import column_map
-from mpm_verify.cases.mms.external.command import PYTHON, program, version
 from mpm_verify.cases.mms.run import AXES, NORMS, QUANTITIES, QUICK, SOLID, Result, Run
 from mpm_verify.cases.mms.stability import check_time_steps
+from mpm_verify.cases.solvers import column_map
+from mpm_verify.cases.solvers.command import PYTHON, program
+from mpm_verify.cases.solvers.naming import method_of, version_of
 from mpm_verify.mms.cells import fitting, ratio
 from mpm_verify.mms.discretisation import dimension
 from mpm_verify.mms.energy import check_energy
@@ -71,7 +71,7 @@ def canonical(values: dict[str, Any]) -> dict[str, Any]:
     if values.get("solver"):
         values["solver_version"] = values.get("solver_version") or version_of(values["solver"])
     if values.get("solver") and "method" not in values:
-        values["method"] = re.sub(r"\W+", "_", program(values["solver"]).removesuffix(".py"))
+        values["method"] = method_of(values["solver"])
     else:
         values["method"] = canonical_name(METHODS, values.get("method", Run.method))
     check_stress_update(values.get("stress", Run.stress))
@@ -90,15 +90,6 @@ def in_precision(solution: str, precision: str) -> str:
     short = canonical_name(SOLUTIONS, ":".join(filter(None, [name, ",".join(items)])))
     left = [f"{key}={getattr(create(SOLUTIONS, short), key):g}" for key in usual if f"{key}=" not in short]
     return f"{short}{',' if ':' in short else ':'}{','.join(left)}" if left else short
-
-
-def version_of(solver: str) -> str:
-    """Version of a solver of somebody else: a command, or a Python function."""
-    if not solver.startswith(PYTHON):
-        return version(solver)
-    from mpm_verify.cases.mms.external.callables import version as of_function
-
-    return of_function(solver)
 
 
 def check(runs: Sequence[Run]) -> None:

@@ -8,6 +8,7 @@ import numpy as np
 from mpm_verify.mms.constitutive.driver import (
     Subject,
     apart,
+    columns,
     drive,
     elastic,
     random,
@@ -48,14 +49,18 @@ def energetic(subject: Subject, name: str, F: Floats) -> Tested:
     material = subject.material
     if material.energy is None:
         return not_asked(name, Part.STRESS, Reason.NO_ENERGY)
-    P, zz = slopes(material, F)
-    J = np.linalg.det(F)
-    plane = P if material.small_strain else P @ F.transpose(0, 2, 1) / J[:, None, None]
-    zz = zz if material.small_strain else zz / J
-    expected = np.stack([plane[:, 0, 0], plane[:, 1, 1], zz, plane[:, 0, 1]], axis=1)
+    plane, zz = cauchy(material, F)
+    expected = columns(plane, zz)
     found = drive(material, [F], np.zeros((POINTS, 4))).sigma
     skew = off(plane[:, 0, 1], plane[:, 1, 0], subject.stress)
     return Tested(name, max(off(found, expected, subject.stress), skew), bound(16), Part.STRESS)
+
+
+def cauchy(material: Any, F: Floats) -> tuple[Floats, Floats]:
+    """Cauchy stress (P,2,2) in the plane, and its zz (P,), of F (P,2,2), by the complex step of the energy."""
+    P, zz = slopes(material, F)
+    J = np.linalg.det(F)
+    return (P, zz) if material.small_strain else (P @ F.transpose(0, 2, 1) / J[:, None, None], zz / J)
 
 
 def slopes(material: Any, F: Floats) -> tuple[Floats, Floats]:

@@ -22,7 +22,7 @@ BADGES = {"AGREES": "PASS", "PARTS": "FAIL"}
 
 def title(examined: Examined) -> str:
     """Title: the program, the solution and the grid."""
-    from mpm_verify.cases.mms.external.command import program
+    from mpm_verify.cases.solvers.command import program
 
     run = examined.run
     return f"{program(run.solver)} against the reference: {label(run.solution)}, {run.cells} cells, {run.ppc} per cell"

@@ -5,7 +5,6 @@ from pathlib import Path
 
 from mpm_verify.cases.exact.case import ExactRemark
 from mpm_verify.cases.harness.checks import Examination
-from mpm_verify.mms.constitutive.tested import Part
 from mpm_verify.reports.components.examined import Section
 from mpm_verify.reports.components.examined_study import page as examined_page
 from mpm_verify.reports.components.page import Add
@@ -25,7 +24,7 @@ def page(record: Record, vtk: bool = False) -> Path:
 
 def sections(examination: Examination, add: Add) -> Sequence[Section]:
     """Sections, one for each group of tests."""
-    return [section(examination, group) for group in said.HEADINGS if group in examination.groups]
+    return [section(examination, group) for group in said.ALL_HEADINGS if group in examination.groups]
 
 
 def section(examination: Examination, group: str) -> Section:
@@ -40,7 +39,7 @@ def section(examination: Examination, group: str) -> Section:
             sci(float(one.numbers["residual"])),
             sci(float(one.numbers["bound"])),
             f"{str(one.numbers['name']).partition(' ')[2]} {one.numbers['run']}".strip(),
-            said.PARTS[Part(str(one.numbers["part"]))],
+            said.ALL_PARTS[str(one.numbers["part"])],
         )
         for one in mine
         if one.code == ExactRemark.HELD
@@ -48,4 +47,4 @@ def section(examination: Examination, group: str) -> Section:
     left = [sentence(one) for one in mine if one.code == ExactRemark.NOT_ASKED]
     text = [f"Not asked: {' '.join(left)}"] if left else []
     table = Table("Tests", HEAD, rows, texts=("what it holds", "with", "points to"))
-    return Section(group, said.HEADINGS[group], text, (), [table] if rows else [])
+    return Section(group, said.ALL_HEADINGS[group], text, (), [table] if rows else [])

@@ -5,6 +5,7 @@ from typing import Any
 
 from mpm_verify.cases.exact.case import ExactRemark as Code
 from mpm_verify.mms.constitutive.tested import FAILED, Part, Reason
+from mpm_verify.reports.sentences import exact_others as others
 from mpm_verify.reports.sentences.remarks import Words
 
 Numbers = Mapping[str, Any]
@@ -108,11 +109,21 @@ REASONS = {
 }
 
 
+ALL_HELD: Mapping[str, str] = HELD | others.HELD
+ALL_PARTS: Mapping[str, str] = {str(part): text for table in (PARTS, others.PARTS) for part, text in table.items()}
+ALL_REASONS: Mapping[str, str] = {
+    str(reason): text for table in (REASONS, others.REASONS) for reason, text in table.items()
+}
+ALL_HEADINGS = HEADINGS | others.HEADINGS
+
+
 def holds(n: Numbers) -> str:
     """Sentence for a battery without a miss."""
-    others = f"; {n['others']:,} were not asked, each for a reason" if n["others"] else ""
+    left = f"; {n['others']:,} were not asked, each for a reason" if n["others"] else ""
+    if n.get("solver"):
+        return f"All {n['asked']:,} quantities of {n['runs']} runs are exact to round-off{left}."
     pairs = f"{n['runs']} pair{'s' * (n['runs'] != 1)} of method and material"
-    return f"All {n['asked']:,} tests of {pairs} hold to round-off{others}."
+    return f"All {n['asked']:,} tests of {pairs} hold to round-off{left}."
 
 
 def points(n: Numbers) -> str:
@@ -122,8 +133,8 @@ def points(n: Numbers) -> str:
     )
     more = f", and {n['failed'] - 1} more" if n["failed"] > 1 else ""
     return (
-        f"{n['test']} ({HELD[str(n['test'])]}): {size} ({n['name']}, {n['run']}{more}). It points to "
-        f"{PARTS[Part(str(n['part']))]}."
+        f"{n['test']} ({ALL_HELD[str(n['test'])]}): {size} ({n['name']}, {n['run']}{more}). It points to "
+        f"{ALL_PARTS[str(n['part'])]}."
     )
 
 
@@ -131,6 +142,11 @@ REMARKS: dict[str, Words] = {
     Code.HOLDS: holds,
     Code.FAILS: lambda n: f"{n['failed']:,} of {n['asked']:,} tests do not hold.",
     Code.POINTS: points,
-    Code.HELD: lambda n: HELD[str(n["test"])],
-    Code.NOT_ASKED: lambda n: f"{n['test']}: {n['count']} times, as {REASONS[Reason(str(n['reason']))]}.",
+    Code.ENDED: lambda n: f"{n['failed']} of {n['runs']} runs failed, and were not held.",
+    Code.DIGITS: lambda n: (
+        f"Numbers in the files are rounded by {n['rounding']:.1g} of their scale, and bounds are as wide; write 17 "
+        "digits."
+    ),
+    Code.HELD: lambda n: ALL_HELD[str(n["test"])],
+    Code.NOT_ASKED: lambda n: f"{n['test']}: {n['count']} times, as {ALL_REASONS[str(n['reason'])]}.",
 }

@@ -81,4 +81,5 @@ def replicate(number: int) -> str:
 
 def check(name: str, failure: Failure | None) -> str:
     """Name of a check, with what ended the run that was to give its number."""
-    return f"{name}: {cause(failure)} at step {failure.step}" if failure else name
+    when = f" at step {failure.step}" if failure and failure.step >= 0 else ""
+    return f"{name}: {cause(failure)}{when}" if failure else name

@@ -74,7 +74,7 @@ def hints(results: Iterable[Any]) -> list[str]:
         return []
     for result in sorted(known, key=fineness):
         if getattr(result.run, "solver", "") and result.status == "finished":
-            finest[result.run.method, result.run.solution] = result
+            finest[result.run.method, getattr(result.run, "solution", "")] = result
     return [hint(name, value) for result in finest.values() for name, value in said(result)]
 
 

@@ -94,6 +94,12 @@ def verdicts() -> list[tuple[str, bool]]:
     ]
 
 
+def confidence(verdict: Verdict) -> float:
+    """Confidence of its interval, not a number where there is none."""
+    found = verdict.reason.numbers.get("confidence", nan)
+    return found if isinstance(found, float) else nan
+
+
 def statistics() -> list[tuple[str, bool]]:
     """Whether orders, windows, intervals and the correction for several quantities are what tables say."""
     # five levels have two windows, and alpha / 4 for the longer one
@@ -102,8 +108,8 @@ def statistics() -> list[tuple[str, bool]]:
     wrong, right = ([Level(1 / n, (quadratic(1 / n),)) for n in CELLS] for _ in range(2))
     known = Expectation(2.0, recorded=near(quadratic(1 / 32) / 1.5), within=0.01)
     items = [Quantity(wrong, known, 0.0, quadratic(1 / 32)), Quantity(right, Expectation(2.0), 0.0, quadratic(1 / 32))]
-    second = judge_family(items)[1].reason.numbers.get("confidence", nan)
-    both = [one.reason.numbers.get("confidence", nan) for one in judge_family([items[1], items[1]])]
+    second = confidence(judge_family(items)[1])
+    both = [confidence(one) for one in judge_family([items[1], items[1]])]
     return [
         ("local orders", np.allclose(local_orders(h, 5 * h**1.5), 1.5, atol=1e-12)),
         ("interval of Student", abs(low - (2 - 0.1 * t3)) < 1e-9 and abs(high - (2 + 0.1 * t3)) < 1e-9),

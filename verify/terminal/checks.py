@@ -48,6 +48,8 @@ def sentence(check: Check) -> str:
     way = f"{words.way(check.way)} " if check.way in words.BOUNDS else ""
     relative = " of it" if check.way == "relative" else ""
     name = failures.check(check.name, check.failure)
+    if check.failure and check.failure.step < 0:
+        return name
     if not isfinite(check.found):
         return f"{name}: there is no number to hold against {check.expected:.8g}"
     return f"{name} is {check.found:.8g}, expected {way}{check.expected:.8g}{within}{relative} ({check.source})"

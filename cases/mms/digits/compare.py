@@ -12,9 +12,9 @@ import numpy as np
 
 from mpm_verify.cases.mms.digits.records import AGREES, Against, Parting
 from mpm_verify.cases.mms.digits.reference import Scheme
-from mpm_verify.cases.mms.external.answer import Frame
-from mpm_verify.cases.mms.external.components import WEIGHTS
-from mpm_verify.cases.mms.external.levels import Levels
+from mpm_verify.cases.solvers.answer import Frame
+from mpm_verify.cases.solvers.components import WEIGHTS
+from mpm_verify.cases.solvers.levels import Levels
 from mpm_verify.mms.manufacture import Manufactured
 from mpm_verify.solver.state import Floats
 

@@ -10,8 +10,9 @@ from mpm_verify.cases.mms.digits.records import Against, Compared
 from mpm_verify.cases.mms.digits.reference import Scheme, reference, run_frames
 from mpm_verify.cases.mms.digits.table import alike, by_rms, stored
 from mpm_verify.cases.mms.exact import manufactured
-from mpm_verify.cases.mms.external.execute import Answer, answered, exported, positions
+from mpm_verify.cases.mms.external.execute import answered, exported
 from mpm_verify.cases.mms.run import Run
+from mpm_verify.cases.solvers.asking import Answer, positions
 from mpm_verify.mms.export.case import Exported
 from mpm_verify.solver.failure import Failure
 from mpm_verify.solver.layout import parallelograms

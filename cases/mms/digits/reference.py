@@ -5,10 +5,11 @@ from dataclasses import dataclass, field, replace
 from itertools import product
 
 from mpm_verify.cases.mms.execute import setup
-from mpm_verify.cases.mms.external.answer import Frame
-from mpm_verify.cases.mms.external.execute import FRAMES, Answer
-from mpm_verify.cases.mms.external.levels import Levels
+from mpm_verify.cases.mms.external.execute import FRAMES
 from mpm_verify.cases.mms.run import Run
+from mpm_verify.cases.solvers.answer import Frame
+from mpm_verify.cases.solvers.asking import Answer
+from mpm_verify.cases.solvers.levels import Levels
 from mpm_verify.mms.discretisation import output_steps, time_steps, width
 from mpm_verify.solver.failure import RunFailed
 from mpm_verify.solver.layout import Layout

@@ -8,9 +8,9 @@ import numpy as np
 from scipy.sparse import csr_matrix
 from scipy.spatial import cKDTree
 
-from mpm_verify.cases.mms.external.answer import Frame
-from mpm_verify.cases.mms.external.components import reference
-from mpm_verify.cases.mms.external.levels import Levels
+from mpm_verify.cases.solvers.answer import Frame
+from mpm_verify.cases.solvers.components import reference
+from mpm_verify.cases.solvers.levels import Levels
 from mpm_verify.mms.components import AXES, COMPONENTS
 from mpm_verify.mms.export.case import Exported
 from mpm_verify.mms.manufacture import Manufactured

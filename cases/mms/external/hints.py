@@ -10,10 +10,10 @@ from math import inf
 import numpy as np
 
 from mpm_verify.cases.mms.external import consistency, motion
-from mpm_verify.cases.mms.external.answer import Frame
 from mpm_verify.cases.mms.external.balance import Balance
 from mpm_verify.cases.mms.external.evidence import Evidence
-from mpm_verify.cases.mms.external.levels import Levels
+from mpm_verify.cases.solvers.answer import Frame
+from mpm_verify.cases.solvers.levels import Levels
 from mpm_verify.mms.export.case import Exported
 from mpm_verify.mms.manufacture import Manufactured
 

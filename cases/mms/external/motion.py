@@ -8,7 +8,7 @@ from scipy.spatial import cKDTree
 
 from mpm_verify.cases.mms.external.balance import Balance, Tried
 from mpm_verify.cases.mms.external.evidence import Evidence
-from mpm_verify.cases.mms.external.matching import NEAR
+from mpm_verify.cases.solvers.matching import NEAR
 from mpm_verify.solver.state import Floats
 
 Bools = NDArray[np.bool_]

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from mpm_verify.cases.mms.external.components import spread
+from mpm_verify.cases.solvers.components import spread
 from mpm_verify.solver.failure import FailureKind, RunFailed
 
 ENDINGS = ("csv", "tsv", "txt", "npz", "vtu")

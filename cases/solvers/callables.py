@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from mpm_verify.cases.mms.external.answer import Frame, framed
-from mpm_verify.cases.mms.external.command import PYTHON
-from mpm_verify.cases.mms.external.components import QUANTITIES, spread
-from mpm_verify.cases.mms.external.levels import Levels, stated
+from mpm_verify.cases.solvers.answer import Frame, framed
+from mpm_verify.cases.solvers.command import PYTHON
+from mpm_verify.cases.solvers.components import QUANTITIES, spread
+from mpm_verify.cases.solvers.levels import Levels, stated
 from mpm_verify.mms.components import AXES
 from mpm_verify.mms.export.record import CaseRecord
 from mpm_verify.solver.failure import FailureKind, RunFailed

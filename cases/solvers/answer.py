@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from mpm_verify.cases.mms.external.components import QUANTITIES
-from mpm_verify.cases.mms.external.digits import rounding
-from mpm_verify.cases.mms.external.matching import matched
-from mpm_verify.cases.mms.external.precision import single
-from mpm_verify.cases.mms.external.readers import ENDINGS, table
+from mpm_verify.cases.solvers.components import QUANTITIES
+from mpm_verify.cases.solvers.digits import rounding
+from mpm_verify.cases.solvers.matching import matched
+from mpm_verify.cases.solvers.precision import single
+from mpm_verify.cases.solvers.readers import ENDINGS, table
 from mpm_verify.solver.failure import FailureKind, RunFailed
 from mpm_verify.solver.state import Floats
 

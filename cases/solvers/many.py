@@ -9,7 +9,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from mpm_verify.cases.mms.external.readers import Columns, arrays, mesh, text
+from mpm_verify.cases.solvers.readers import Columns, arrays, mesh, text
 
 Frames = Iterator[tuple[float | None, Callable[[], Columns]]]
 ITEM = "ITEM: "

@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from mpm_verify.cases.mms.external.answer import Frame, framed
-from mpm_verify.cases.mms.external.column_map import KEEPS, ColumnMap
-from mpm_verify.cases.mms.external.components import spread
-from mpm_verify.cases.mms.external.digits import rounding
-from mpm_verify.cases.mms.external.many import Frames, frames, split
-from mpm_verify.cases.mms.external.matching import matched
-from mpm_verify.cases.mms.external.readers import Columns
+from mpm_verify.cases.solvers.answer import Frame, framed
+from mpm_verify.cases.solvers.column_map import KEEPS, ColumnMap
+from mpm_verify.cases.solvers.components import spread
+from mpm_verify.cases.solvers.digits import rounding
+from mpm_verify.cases.solvers.many import Frames, frames, split
+from mpm_verify.cases.solvers.matching import matched
+from mpm_verify.cases.solvers.readers import Columns
 from mpm_verify.mms.components import AXES
 from mpm_verify.solver.failure import FailureKind, RunFailed
 from mpm_verify.solver.state import Floats

@@ -1,0 +1,159 @@
+"""Question to somebody else's solver: a case folder is written, the program reads it, and its answer is read.
+
+A Python function is asked with arrays instead.
+"""
+
+import tempfile
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol
+
+from mpm_verify.cases.solvers.answer import Frame, read
+from mpm_verify.cases.solvers.callables import Case, called
+from mpm_verify.cases.solvers.column_map import parsed
+from mpm_verify.cases.solvers.command import PYTHON, filled
+from mpm_verify.cases.solvers.components import reference
+from mpm_verify.cases.solvers.levels import USUAL, Levels, levels
+from mpm_verify.cases.solvers.mapped import read as read_mapped
+from mpm_verify.mms.export.case import Exported
+from mpm_verify.mms.export.files import files
+from mpm_verify.mms.export.process import Ended
+from mpm_verify.mms.export.process import run as run_program
+from mpm_verify.solver.failure import Failure, FailureKind, RunFailed
+from mpm_verify.solver.state import Floats
+
+LOG, LINES, WIDTH = "log.txt", 5, 300  # of the log, the last lines that are kept with the Result
+
+
+class Asking(Protocol):
+    """Run that says which solver is asked, and what it may take: a time in s, and memory in MB."""
+
+    @property
+    def solver(self) -> str:
+        """Command, or the name of a Python function."""
+
+    @property
+    def columns(self) -> str:
+        """Map of the columns that it writes."""
+
+    @property
+    def time_limit(self) -> float:
+        """Seconds that it may take."""
+
+    @property
+    def memory_limit(self) -> float:
+        """Address space that it may have, MB; 0: any."""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """Answer of a solver: its frames by step, what it states, and how it ended; no frames where it failed."""
+
+    frames: dict[int, Frame]
+    told: Levels
+    failure: Failure | None = None
+    wall_s: float = 0.0
+    log: tuple[str, ...] = ()
+    exit_code: int | None = None
+
+
+def ask(
+    run: Asking,
+    case: Exported,
+    force: Callable[[Floats, float], Floats],
+    tick: Callable[[float], None] = lambda fraction: None,
+) -> Answer:
+    """Ask a command or a Python function.
+
+    Parameters
+    ----------
+    run
+        Solver and its limits.
+    case
+        Content of the case folder.
+    force
+        Body force per mass (n,d) of reference positions (n,d) and a time, for a Python function.
+    tick
+        Hears the fraction of the frames that are there.
+
+    Returns
+    -------
+    Answer
+        Frames, or what failed.
+    """
+    return in_process(run, case, force) if run.solver.startswith(PYTHON) else by_command(run, case, tick)
+
+
+def by_command(run: Asking, case: Exported, tick: Callable[[float], None]) -> Answer:
+    """Answer of a command, in a folder that is removed."""
+    with tempfile.TemporaryDirectory(prefix="mpm-verify-") as top:
+        folder, out = Path(top) / "case", Path(top) / "out"
+        out.mkdir()
+        for name, text in files(case).items():
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            (folder / name).write_text(text, encoding="utf-8")
+        words, room = filled(run.solver, folder, out), run.memory_limit * 2**20
+
+        def look() -> None:
+            tick(len(list(out.glob("result_*"))) / (1 + len(case.record.frames)))
+
+        started = time.perf_counter()
+        ended = run_program(words, out, run.time_limit, into=LOG, memory=room, look=look, here=Path.cwd())
+        wall = time.perf_counter() - started
+        failure, frames, told = None, dict[int, Frame](), Levels()
+        log = last_lines(out / LOG, ended)
+        try:
+            check(ended, run.time_limit, log)
+            told = levels(out, parsed(run.columns).levels if run.columns else USUAL)
+            frames = frames_of(run, case, out)
+        except RunFailed as error:
+            failure = error.failure
+        return Answer(frames, told, failure, wall, log, ended.code)
+
+
+def in_process(run: Asking, case: Exported, force: Callable[[Floats, float], Floats]) -> Answer:
+    """Answer of a Python function."""
+    failure, frames, told = None, dict[int, Frame](), Levels()
+    started = time.perf_counter()
+    try:
+        given = Case(case.record, case.particles, force)
+        frames, told = called(run.solver, given, positions(case), spacing(case))
+    except RunFailed as error:
+        failure = error.failure
+    return Answer(frames, told, failure, time.perf_counter() - started)
+
+
+def positions(case: Exported) -> Floats:
+    """Reference positions (P,d) of the particles of a case."""
+    return reference(case.particles, case.record.dimension)
+
+
+def check(ended: Ended, seconds: float, log: tuple[str, ...]) -> None:
+    """Raise RunFailed for a program that did not end with 0, with the last line that it printed."""
+    names = {"said": log[-1]} if log else {}
+    if ended.code is None:
+        raise RunFailed(FailureKind.TIME_LIMIT, -1, numbers={"seconds": seconds}, names=names)
+    if ended.code != 0:
+        raise RunFailed(FailureKind.SOLVER_ERROR, -1, numbers={"code": float(ended.code)}, names=names)
+
+
+def spacing(case: Exported) -> float:
+    """Distance of particles at reference, a length."""
+    return float(case.record.dx * case.record.ppc ** (-1 / case.record.dimension))
+
+
+def frames_of(run: Asking, case: Exported, out: Path) -> dict[int, Frame]:
+    """Frames that a program has written, by step. Raises RunFailed for what is missing or cannot be read."""
+    X, steps = positions(case), case.record.frames
+    if run.columns:
+        return read_mapped(out, parsed(run.columns), steps, case.record.dt, X, spacing(case))
+    return {step: read(out, step, X, spacing(case)) for step in steps}
+
+
+def last_lines(log: Path, ended: Ended) -> tuple[str, ...]:
+    """Last lines that the program printed, those on its error output last."""
+    said = log.read_bytes()[-4 * LINES * WIDTH :].decode("utf-8", "replace") if log.exists() else ""
+    lines = [line.strip()[:WIDTH] for line in f"{said}\n{ended.said}".splitlines() if line.strip()]
+    return tuple(lines[-LINES:])
