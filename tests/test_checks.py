@@ -235,7 +235,7 @@ def test_json_has_no_nan_and_junit_every_check(tmp_path: Path, capsys: pytest.Ca
     infinite = replace(GOOD, name="lost", found=inf)
     assert run(tmp_path, GOOD, BAD, LOST, infinite, json_output=True, junit=junit, page=True) == 1
     told = json.loads(capsys.readouterr().out, parse_constant=strict)
-    assert (told["study"], told["case"], told["outcome"], told["version"]) == ("checks", "element", "FAIL", 3)
+    assert (told["study"], told["case"], told["outcome"], told["version"]) == ("checks", "element", "FAIL", 4)
     assert [check["outcome"] for check in told["checks"]] == ["PASS", "FAIL", "ERROR", "ERROR"]
     assert [check["found"] for check in told["checks"]] == [1.001, 0.2, None, None]
     assert Path(told["report"]).exists()
@@ -361,6 +361,6 @@ def test_report_of_a_folder_that_cannot_be_drawn(
     for code, out, err in said.values():
         assert (code, out, err.count("\n")) == (2, "", 1)
         assert err.startswith("verify: ")
-    assert "is of the case tea, and this version has any_code, column, element" in said["tea"][2]
+    assert "is of the case tea, and this version has any_code, column, detect, element" in said["tea"][2]
     assert "run its study to the end" in said["empty"][2]
     assert "left as it is" in said["broken"][2]

@@ -260,7 +260,7 @@ def _equivalence(w: Window) -> Finding:
     slack = w.fit.pair
     if low <= start and end <= high and low - slack <= last <= high + slack:
         return PASS, Reason(ReasonCode.AS_EXPECTED, numbers)
-    if slope.value > high or last > high + slack:
+    if slope.value > high or last > high + slack or low <= start < high < end:
         return INCONCLUSIVE, Reason(ReasonCode.ORDER_ABOVE, numbers, wanted=w.q.finer)
     if end < low and last < low and not w.fit.rises_to(low):
         return FAIL, Reason(ReasonCode.ORDER_BELOW, numbers)
