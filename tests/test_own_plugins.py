@@ -89,7 +89,8 @@ def test_parameters_and_paths(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
     with pytest.raises(ValueError, match=r"^own.py has no parameter 'B'; it has L, C, A, n, axis, phase$"):
         create(SOLUTIONS, "own.py:B=1")
     with pytest.raises(
-        ValueError, match=r"^no case 'own.py'; choose from any_code, column, detect, element, exact, mms, objectivity, wave_bar$"
+        ValueError,
+        match=r"^no case 'own.py'; choose from any_code, column, detect, element, exact, mms, objectivity, wave_bar$",
     ):
         load(CASES, "own.py")
 

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.patches import Patch
 
 from mpm_verify.cases.judging.power import Row
@@ -21,7 +22,7 @@ def power_figure(rows: Sequence[Row]) -> Figure:
     levels = list(dict.fromkeys(row.levels for row in rows))
     scatters = list(dict.fromkeys(row.scatter for row in rows))
     with rc_context(style.RC | {"axes.grid": False, "hatch.linewidth": 0.8}):
-        figure = Figure(figsize=(12.4, 7.4), layout="constrained")
+        figure = Figure(figsize=(12.4, 7.4), layout=ConstrainedLayoutEngine(rect=(0.02, 0, 0.98, 1)))
         axes = figure.subplots()
         for row in rows:
             column = levels.index(row.levels) * (len(scatters) + GAP) + scatters.index(row.scatter)

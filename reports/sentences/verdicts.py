@@ -248,7 +248,7 @@ SAID: dict[ReasonCode, Callable[[Reason], str]] = {
     ReasonCode.TIME_STEP_COUPLED: _coupled,
     ReasonCode.ERROR_RISES: lambda r: f"the error does not fall on the way to h={_h(r, 'h')}",
     ReasonCode.NOT_SETTLED: _not_settled,
-    ReasonCode.ORDER_ABOVE: lambda r: f"{_order(r)}: it reaches above the band, so more is to be expected or errors cancel",
+    ReasonCode.ORDER_ABOVE: lambda r: f"{_order(r)}: it reaches above the band, so expect more, or errors cancel",
     ReasonCode.ORDER_UNDECIDED: lambda r: f"{_order(r)}: undecided",
     ReasonCode.CONTAMINATION_OPEN: lambda r: f"contamination of {_percent(r, 'limit')} is not ruled out: {_parts(r)}",
     ReasonCode.ADDS_IN_SQUARE: lambda r: (
