@@ -88,7 +88,7 @@ def test_json(verify: Any) -> None:
     ended = verify("column", *SMALL, "--duration", "0.1", "--json")
     assert (ended.code, ended.err) == (1, "")  # it does not rest in a tenth of a second
     told = json.loads(ended.out)
-    assert (told["version"], told["case"], told["outcome"]) == (3, "column", "FAIL")
+    assert (told["version"], told["case"], told["outcome"]) == (4, "column", "FAIL")
     assert told["study"] == "column-cells-2-ppc-4-duration-0.1"
     (one,) = told["runs"]
     assert one["gate"] is None  # infinite
