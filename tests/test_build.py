@@ -279,6 +279,8 @@ def test_another_value_is_another_folder(case: str, field: str, here: str) -> No
             {"solution": ("bar",)},
             "column has no axis 'solution' (did you mean duration?); it has ",
         ),
+        ("mms", {"offset": ((2.0, 2.0),)}, "offset = (2.0, 2.0) shifts particles by fractions of their spacing"),
+        ("detect", {"method": ("nope",)}, "no method 'nope'; choose from bspline2"),
         ("beam", {}, "no case 'beam'; choose from any_code, column, detect, element, exact, mms"),
         ("mms", {"cells": (8, 1)}, "cells = 1 cannot be run; choose whole numbers from 2 to 4096"),
         ("mms", {"cells": ("8",)}, "cells = '8': input should be a valid integer"),

@@ -621,6 +621,26 @@ def test_what_adds_in_the_square_is_found(fraction: float, code: str) -> None:
         assert f"{fraction:.0%}".replace("%", " %") in said(got)
 
 
+@pytest.mark.parametrize("scale", [1e-300, 1e290])
+def test_errors_of_any_size_are_judged(scale: float) -> None:
+    """Their squares are no numbers."""
+    levels = [Level(float(h), (scale * float(h**2 + 0.0005 * h),)) for h in cells(5)]
+    got = judge(levels, SECOND, floor=0.0, dt_halved=levels[-1].errors[0])
+    plain = verdict((cells(5) ** 2 + 0.0005 * cells(5)).tolist())
+    assert got.outcome is plain.outcome is PASS
+    assert got.contamination is not None
+    assert plain.contamination is not None
+    assert got.contamination.added == pytest.approx(plain.contamination.added)
+
+
+def test_a_window_is_told_by_its_coarsest_cells() -> None:
+    got = verdict([1e-3, 0.3, 1e-9, *(cells(7)[3:] ** 2).tolist()])
+    assert got.outcome is PASS
+    assert got.window == (3, 6)
+    assert "from h=1/64 on" in said(got)
+    assert " on (" not in said(verdict(CPDI_4))
+
+
 def test_a_leak_of_one_sign_is_not_said_to_add_in_the_square() -> None:
     h = 0.8 ** np.arange(8.0, 12.0)
     levels = [Level(float(a), (float(a**2 + 0.1 * h[-1] * a),)) for a in h]

@@ -15,6 +15,8 @@ from mpm_verify.cases.detect.run import AXES, QUICK, USUAL, Result, Run, one
 from mpm_verify.cases.harness.checks import Check
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.cases.harness.study import Study
+from mpm_verify.solver.plugins import METHODS
+from mpm_verify.solver.plugins import canonical as canonical_name
 
 __all__ = ["AXES", "QUICK", "Result", "Run"]
 
@@ -51,7 +53,7 @@ def title(runs: Sequence[Run]) -> str:
 def canonical(values: dict[str, Any]) -> dict[str, Any]:
     """Values with a method that the defect is in."""
     planted = one(values.get("defect", NONE))
-    method = values.get("method", USUAL)
+    method = canonical_name(METHODS, values.get("method", USUAL))
     values["method"] = method if not planted.methods or method in planted.methods else planted.methods[0]
     return values
 

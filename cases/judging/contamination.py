@@ -39,6 +39,7 @@ def contamination(h: Array, error: Array, order: float, chance: float) -> Contam
     ----------
     Lawson & Hanson (1995), Solving Least Squares Problems, doi:10.1137/1.9781611971217 (non-negative least squares)
     """
+    error = error / error[-1]  # squares of small and of large errors are numbers too
     fraction, most = _bounded(h, error, order, chance, 1)
     squares, squared = _bounded(h, error, order, chance, 2)
     shown = _shown(h, error, order, float(1 - squares[0]))

@@ -257,6 +257,8 @@ def _equivalence(w: Window) -> Finding:
     start, end = slope.interval(w.confidence)
     numbers: Numbers = {"order": slope.value, "start": start, "end": end, "confidence": w.confidence, "last": last}
     numbers |= {"band_low": low, "band_high": high}
+    if len(w.fit.h) < len(w.q.fit.h):
+        numbers["from"] = float(w.fit.h[0])
     slack = w.fit.pair
     if low <= start and end <= high and low - slack <= last <= high + slack:
         return PASS, Reason(ReasonCode.AS_EXPECTED, numbers)

@@ -152,7 +152,7 @@ class ReasonCode(StrEnum):
     ALL_FAILED = "all_failed"  # PASS: every run ended with the registered kind
     DIVERGES = "diverges"  # PASS [h_0, error_0, h_1, error_1 of growth; finer runs that failed]
     STALLS = "stalls"  # PASS [order_best, order_last, h_last; those of growth]
-    ORDER_BELOW = "order_below"  # FAIL [order, start, end, confidence, last, band_low, band_high]
+    ORDER_BELOW = "order_below"  # FAIL [order, start, end, confidence, last, band_low, band_high; from, of a window]
     CONTAMINATED = "contaminated"  # FAIL [lower, floor, most, squared]
     MAGNITUDE = "magnitude"  # FAIL [h, ratio, within]
     FAR_OFF = "far_off"  # FAIL: more than FAR times the recorded error, carried over [h, ratio, recorded_h]

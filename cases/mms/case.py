@@ -75,6 +75,9 @@ def canonical(values: dict[str, Any]) -> dict[str, Any]:
     else:
         values["method"] = canonical_name(METHODS, values.get("method", Run.method))
     check_stress_update(values.get("stress", Run.stress))
+    offset = values.get("offset", Run.offset)
+    if not all(-0.5 < part < 0.5 for part in offset):
+        raise ValueError(f"offset = {offset} shifts particles by fractions of their spacing: choose -0.49 to 0.49 each")
     return values
 
 

@@ -145,7 +145,8 @@ def _order(r: Reason) -> str:
         words.order(_number(r, name)) for name in ("order", "start", "end", "last", "band_low", "band_high")
     )
     interval = f"{100 * _number(r, 'confidence'):.3g} % interval {start} to {end}"
-    return f"order {order} ({interval}, last pair {last}) against {low} to {high}"
+    window = f" from h={_h(r, 'from')} on" if "from" in r.numbers else ""
+    return f"order {order}{window} ({interval}, last pair {last}) against {low} to {high}"
 
 
 def _parts(r: Reason) -> str:

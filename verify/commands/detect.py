@@ -41,13 +41,15 @@ def detect(
         from mpm_verify.cases.harness.build import Asked
 
         chosen = values(Run, asked)
+        if (blind or key) and (mutants or more.get("dry_run")):
+            raise ValueError("--blind plants one defect and runs it; leave --mutants and --dry-run out")
         if blind or key:
             return blindly(chosen, seed, blind, key)
         if mutants:
             from mpm_verify.cases.detect.mutate import sampled
 
             if "defect" in chosen or mutants < 1:
-                raise ValueError(f"--mutants {mutants} is a number above 0, and goes without --defect")
+                raise ValueError(f"--mutants {mutants} has to be above 0, and goes without --defect")
             chosen["defect"] = sampled(mutants, seed)
         if certify and quick:
             raise ValueError("--certify is for the full campaign; leave --quick out")

@@ -16,6 +16,9 @@ if TYPE_CHECKING:
     from mpm_verify.cases.judging.power import Row
 
 
+LEAST, MOST = 50, 100_000  # draws
+
+
 def power(
     draws: Annotated[int, typer.Option(help="Draws of each sequence, set of levels and scatter.")] = 400,
     seed: Annotated[int, typer.Option(help="Seed: the same one gives the same numbers.")] = 0,
@@ -27,7 +30,8 @@ def power(
     from mpm_verify.verify.run import check_count, usage
 
     with usage():
-        check_count(draws, "--draws")
+        if not LEAST <= draws <= MOST:
+            raise ValueError(f"--draws {draws} must be from {LEAST}, fewer tell no rate, to {MOST}; usual are 400")
         check_count(jobs, "--jobs")
         if seed < 0:
             raise ValueError(f"--seed {seed} must be 0 or more")
