@@ -5,6 +5,8 @@ import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, cast
 
 import pytest
 
@@ -18,6 +20,7 @@ from mpm_verify.cases.harness.contract import case_named
 from mpm_verify.reports.sentences.detect import quote
 from mpm_verify.solver.source_hash import TOP
 from mpm_verify.verify.detecting import rule
+from mpm_verify.verify.terminal import detect as terminal
 
 ROW = Row("one", "cpdi", "order", "index", "solver/step.py", False, "", {})
 
@@ -165,3 +168,14 @@ def test_the_checks_are_those_that_a_child_has() -> None:
     assert set(CHECKS["full"]) == set(THERE)
     assert set(CHECKS["quick"]) < set(THERE)
     json.dumps(list(CHECKS["full"]))
+
+
+@pytest.mark.parametrize("count", [1, 40])
+def test_few_defects_are_told_one_by_one(count: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    told: list[str] = []
+    monkeypatch.setattr(terminal.checks, "show", lambda record, page, lead: told.append(lead))
+    rows = [Row(NONE, "cpdi", "placebo", "", "", False, "", {})]
+    rows += [Row(f"one-{i}", "cpdi", "order", "index", "f", True, "", {"exact": "FAIL"}) for i in range(count)]
+    record = SimpleNamespace(analysis=SimpleNamespace(more=SimpleNamespace(rows=rows)))
+    terminal.show(cast(Any, record), None)
+    assert told == (["one-0, cpdi: exact FAIL"] if count == 1 else [""])
