@@ -216,8 +216,8 @@ class Fit:
     def scatters(self) -> bool:
         """Whether the errors lie neither about a power of h nor about a smooth curve: one can only ask for more."""
         x, y = np.log(self.h), np.log(self.error)
-        rough, bent = about(x, y, 1), about(x, y, 2) if len(x) > LEVELS else np.inf
-        return self.noise is None and unusual(rough, len(x) - 2) and rough > USUAL and bent > BENT
+        bent = about(x, y, 2) if len(x) > LEVELS else np.inf
+        return self.noise is None and unusual(self.rough, len(x) - 2) and self.rough > USUAL and bent > BENT
 
     @cached_property
     def pair(self) -> float:
@@ -226,7 +226,12 @@ class Fit:
 
     def chance(self, confidence: float) -> float:
         """Largest relative deviation of an error by chance, one-sided."""
-        return limit(about(np.log(self.h), np.log(self.error), 1), len(self.h) - 2, confidence, self.noise)
+        return limit(self.rough, len(self.h) - 2, confidence, self.noise)
+
+    @cached_property
+    def rough(self) -> float:
+        """Standard deviation of the logarithms of the errors about their line."""
+        return about(np.log(self.h), np.log(self.error), 1)
 
     def rises_to(self, low: float) -> bool:
         """Whether the local orders rise, and reach `low` before too many levels at that trend: not a defect yet."""

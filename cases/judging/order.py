@@ -2,10 +2,10 @@
 
 A least-squares slope within half an order of the formal one passes codes with a first-order leak, with a floor, and
 with rates that drift, so no single slope decides here. In turn: evidence against the expectation (evidence.py), gates
-(is there anything to judge), asymptotic window, equivalence of the slope with a band, contamination, magnitude. FAIL
-needs evidence; lack of it is INCONCLUSIVE and names the run that would decide. An expected order of None registers
-non-convergence, which growth or failed runs show. Reasons are codes with numbers, see records.py. The statistics stand
-in fit.py, the norms in norms.py.
+(is there anything to judge), and for each window of levels equivalence of the slope with a band, contamination and
+magnitude. FAIL needs evidence; lack of it is INCONCLUSIVE and names the run that would decide. An expected order of
+None registers non-convergence, which growth or failed runs show. Reasons are codes with numbers, see records.py. The
+statistics stand in fit.py, the norms in norms.py.
 """
 
 from collections.abc import Sequence
