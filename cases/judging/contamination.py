@@ -40,11 +40,10 @@ def contamination(h: Array, error: Array, order: float, chance: float) -> Contam
     Lawson & Hanson (1995), Solving Least Squares Problems, doi:10.1137/1.9781611971217 (non-negative least squares)
     """
     error = error / error[-1]  # squares of small and of large errors are numbers too
-    fraction, most = _bounded(h, error, order, chance, 1)
-    squares, squared = _bounded(h, error, order, chance, 2)
-    shown = _shown(h, error, order, float(1 - squares[0]))
-    lower, floor = float(fraction[1:-1].sum()), float(fraction[-1])
-    return Contamination(lower, floor, most, float(np.sqrt(squared)), shown)
+    plain, square = (_Mixed(_terms(h, order, power), error**power) for power in (1, 2))
+    lower, floor = float(plain.fraction[1:-1].sum()), float(plain.fraction[-1])
+    squared = float(np.sqrt(square.bound(2 * chance)))
+    return Contamination(lower, floor, plain.bound(chance), squared, _shown(plain, square))
 
 
 def _terms(h: Array, order: float, power: int) -> list[Array]:
@@ -53,34 +52,40 @@ def _terms(h: Array, order: float, power: int) -> list[Array]:
     return [expected, (h / h[-1]) ** (power * (order - 1)), floor] if order > 1 else [expected, floor]
 
 
-def _bounded(h: Array, error: Array, order: float, chance: float, power: int) -> tuple[Array, float]:
-    """Fractions of the terms in the finest error to this power, and the largest total that is not of `order`."""
-    terms, error = _terms(h, order, power), error**power
-    part, residual = _relative(terms, error)
-    fraction = part / part.sum()
-    most = np.hypot(residual, power * chance)
+class _Mixed:
+    """Fit of an error (n,), or of its square, by the terms: fractions of the finest, and the norm of what is left."""
 
-    def refuted(total: float) -> bool:
-        mixed = [(1 - total) * terms[0] + total * other for other in terms[1:]]
-        return bool(_relative(mixed, error)[1] > most)
+    def __init__(self, terms: Sequence[Array], error: Array) -> None:
+        self.terms, self.error = terms, error
+        part, self.residual = _relative(terms, error)
+        self.fraction = part / part.sum()
+        self.dof = len(error) - int(np.count_nonzero(part))
 
-    return fraction, _bound(refuted, float(1 - fraction[0]))
+    @property
+    def other(self) -> float:
+        """Fraction that is not of the expected order."""
+        return float(1 - self.fraction[0])
+
+    def left(self, total: float) -> float:
+        """Norm of what is left where `total` of the finest is of the other terms."""
+        mixed = [(1 - total) * self.terms[0] + total * other for other in self.terms[1:]]
+        return _relative(mixed, self.error)[1]
+
+    def bound(self, chance: float) -> float:
+        """Largest fraction that is not refuted, with deviations of `chance`."""
+        most = np.hypot(self.residual, chance)
+        return _bound(lambda total: bool(self.left(total) > most), self.other)
 
 
-def _shown(h: Array, error: Array, order: float, squares: float) -> float:
+def _shown(plain: _Mixed, square: _Mixed) -> float:
     """Fraction that adds in the square where the data refute that there are only SHOWN of it; 0 where they do not.
 
     What fits better as a sum is none: a leak of one sign has a square too.
     """
-    plain = _relative(_terms(h, order, 1), error)[1]
-    terms, error = _terms(h, order, 2), error**2
-    part, residual = _relative(terms, error)
-    dof = len(h) - int(np.count_nonzero(part))
-    if squares <= SHOWN**2 or dof == 0 or residual / 2 >= plain:
+    if square.other <= SHOWN**2 or square.dof == 0 or square.residual / 2 >= plain.residual:
         return 0.0
-    most = np.hypot(residual, limit(residual / np.sqrt(dof), dof, SURE, 0.0))
-    allowed = [terms[0], *((1 - SHOWN**2) * terms[0] + SHOWN**2 * term for term in terms[1:])]
-    return float(np.sqrt(squares)) if _relative(allowed, error)[1] > most + EXACT else 0.0
+    most = np.hypot(square.residual, limit(square.residual / np.sqrt(square.dof), square.dof, SURE, 0.0))
+    return float(np.sqrt(square.other)) if square.left(SHOWN**2) > most + EXACT else 0.0
 
 
 def _relative(terms: Sequence[Array], error: Array) -> tuple[Array, float]:
