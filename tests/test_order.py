@@ -15,7 +15,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mpm_verify.cases.judging.contamination import contamination
-from mpm_verify.cases.judging.fit import Array, asymptotic_window, fit_slope, local_orders
+from mpm_verify.cases.judging.fit import LEVELS, Array, asymptotic_window, fit_slope, local_orders
 from mpm_verify.cases.judging.order import Expectation, Level, Outcome, Quantity, Verdict, judge, judge_family
 from mpm_verify.cases.judging.records import Action, Ended, ReasonCode, Recorded, Wanted
 from mpm_verify.reports.sentences import verdicts
@@ -176,13 +176,13 @@ def test_measured_cpdi_is_of_second_order(errors: tuple[float, ...]) -> None:
 
 
 def test_four_levels_of_cpdi_with_9_particles_leave_it_open() -> None:
-    """Local orders 1.79 2.14 2.00 scatter more than is usual: the interval reaches down to 1.69. One more decides."""
+    """Local orders 1.79 2.14 2.00 scatter more than is usual, and would hide a leak of 19 %. One more decides."""
     got = verdict(CPDI_9[:4])
     assert got.outcome is INCONCLUSIVE
-    assert got.interval == pytest.approx((1.693, 2.287), abs=1e-3)
-    assert got.reason.code is ReasonCode.ORDER_UNDECIDED
+    assert got.reason.code is ReasonCode.CONTAMINATION_OPEN
+    assert got.reason.numbers["most"] == pytest.approx(0.19, abs=0.01)
     assert got.reason.wanted == Wanted(Action.ADD_LEVEL, 1 / 128, (8, 16, 32, 64, 128))
-    assert said(got).endswith("undecided: run with --cells 8,16,32,64,128")
+    assert said(got).endswith("run with --cells 8,16,32,64,128")
 
 
 @pytest.mark.parametrize(("errors", "lost"), [(MPM_4, 1), (MPM_9, 1), ((8.5e-3,), 4), (MPM_4[:3], 0)])
@@ -307,7 +307,7 @@ def test_local_orders_of_the_two_finest_pairs(tail: tuple[float, ...], code: str
     errors = np.exp2(-np.cumsum([6.0, *tail])).tolist()
     got = judge(levels_of(errors), SECOND, floor=0.0, dt_halved=None)
     assert (got.outcome is FAIL) == (code == "falls_short")
-    assert str(verdict(errors).reason.code) in (code, "contaminated")
+    assert str(verdict(errors).reason.code) in (code, "contaminated", "order_below")
     assert ("a floor" in said(got)) == (tail[0] == 2.0 and tail[-1] < 0.5)
 
 
@@ -362,15 +362,16 @@ def test_gate_window() -> None:
 
 
 def test_gate_last_order() -> None:
-    """A wide band holds the whole interval, 1.75 to 1.94, but not the last pair, 1.69."""
-    leak = BAD["leak 0.005 h"](cells(5)).tolist()
-    got = verdict(leak, Expectation(2.0, 0.3))
+    """A wide band holds the whole interval but not the last pair, 1.60, whatever a pair may scatter."""
+    errors = np.exp2(-np.cumsum([6.0, 1.95, 1.87, 1.74, 1.60])).tolist()
+    got = verdict(errors, Expectation(2.0, 0.3))
     assert got.reason.code is ReasonCode.ORDER_UNDECIDED
-    assert "last pair 1.69) against 1.70 to 2.30: undecided" in said(got)
+    assert "last pair 1.60) against 1.70 to 2.30: undecided" in said(got)
 
 
 @pytest.mark.parametrize(
-    ("order", "outcome"), [(1.5, FAIL), (1.79, FAIL), (2.0, PASS), (2.2, PASS), (2.31, INCONCLUSIVE)]
+    ("order", "outcome"),
+    [(1.5, FAIL), (1.76, FAIL), (1.79, INCONCLUSIVE), (2.0, PASS), (2.2, PASS), (2.31, INCONCLUSIVE)],
 )
 def test_band(order: float, outcome: Outcome) -> None:
     got = verdict((cells(5) ** order).tolist())
@@ -411,7 +412,7 @@ def test_contamination_limits(share: float, outcome: Outcome) -> None:
     """A leak on a band so wide, and refined so gently, that nothing but its share of the finest error decides."""
     h = 0.8 ** np.arange(8.0, 12.0)
     errors = h**2 + share / (1 - share) * h[-1] * h
-    levels = [Level(float(a), (float(e),)) for a, e in zip(h, errors, strict=True)]
+    levels = [Level(float(a), (float(e),) * 2) for a, e in zip(h, errors, strict=True)]  # replicates without scatter
     got = judge(levels, Expectation(2.0, 1.9), floor=0.0, dt_halved=float(errors[-1]))
     assert got.contamination is not None
     assert got.contamination.lower == pytest.approx(share, abs=1e-6)
@@ -579,14 +580,10 @@ def test_a_family_of_one_is_the_plain_verdict() -> None:
 
 def test_holm_takes_back_a_narrow_pass() -> None:
     """Orders whose 95 % interval just fits the band: alone a PASS, five together none."""
-    narrow = Expectation(2.0, 0.095, 0.095)
+    narrow = Expectation(2.0, 0.11, 0.11)
     assert verdict(CPDI_9, narrow).outcome is PASS
     family = judge_family([quantity(CPDI_9, narrow)] * 5)
     assert {v.outcome for v in family} == {INCONCLUSIVE}
-    assert {v.reason.numbers["confidence"] for v in family} == {
-        1 - 0.05 / 5 / 4
-    }  # a window of five levels has a quarter
-    assert all("99.8 % interval" in said(v) for v in family)
 
 
 @settings(max_examples=60, deadline=None, derandomize=True)
@@ -597,6 +594,31 @@ def test_coarser_levels_take_no_pass_away(errors: list[float], coarser: list[flo
         more = [*(errors[0] * (1 + one) for one in coarser), *errors]
         levels = [Level(float(a), (float(e),)) for a, e in zip(h, more, strict=True)]
         assert judge(levels, SECOND, floor=1e-15, dt_halved=1.02 * errors[-1]).outcome is PASS
+
+
+@pytest.mark.parametrize("coarse", [(), (math.nan,), (0.0,), (math.inf,)])
+@pytest.mark.parametrize("count", [1, 3])
+@pytest.mark.parametrize("errors", [CLEAN, CPDI_4, (cells(5) ** 2.4).tolist(), (cells(5) ** 1.5).tolist(), CLEAN[:3]])
+def test_coarse_levels_without_an_error_take_nothing_away(
+    errors: Sequence[float], count: int, coarse: tuple[float, ...]
+) -> None:
+    """PASS stays; FAIL and INCONCLUSIVE stay what they are too."""
+    kept = levels_of(errors)
+    more = [Level(2.0 ** -(i - count), coarse) for i in range(count)]
+    alone, beside = (
+        judge(levels, SECOND, floor=1e-15, dt_halved=1.02 * errors[-1]) for levels in (kept, [*more, *kept])
+    )
+    if len(kept) >= LEVELS:
+        assert (beside.outcome, beside.reason.code) == (alone.outcome, alone.reason.code)
+        assert alone.outcome is not PASS or beside.observed == alone.observed
+    else:
+        assert beside.outcome is INCONCLUSIVE
+
+
+def test_a_fine_level_without_an_error_is_missing() -> None:
+    levels = [*levels_of(CLEAN), Level(2.0**-8, ())]
+    got = judge(levels, SECOND, floor=1e-15, dt_halved=1.02 * CLEAN[-1])
+    assert (got.outcome, got.reason.code) == (INCONCLUSIVE, ReasonCode.LEVEL_MISSING)
 
 
 @pytest.mark.parametrize(("n", "passed"), [(4, True), (5, True), (6, True)])
@@ -651,7 +673,7 @@ def test_a_leak_of_one_sign_is_not_said_to_add_in_the_square() -> None:
 
 def test_holm_steps_down_past_each_pass() -> None:
     """The sure ones go first and use up no error; non-convergence does not count, a gated quantity does."""
-    narrow = Expectation(2.0, 0.095, 0.095)
+    narrow = Expectation(2.0, 0.11, 0.11)
     sure, diverging, gated = quantity(CLEAN), quantity(MPM_4, DIVERGES), quantity(CLEAN[:3])
     assert [v.outcome for v in judge_family([quantity(CPDI_9, narrow), sure, diverging])] == [PASS] * 3
     assert [v.outcome for v in judge_family([quantity(CPDI_9, narrow), sure, gated])] == [
@@ -724,10 +746,11 @@ def test_asymptotic_window(orders: tuple[float, ...], window: tuple[int, int] | 
 
 
 def test_slope_against_textbook_numbers() -> None:
-    """y = 0, 1, 1, 2 at x = 0..3: slope 0.6, residual variance 0.1, t(2) = 4.303."""
+    """y = 0, 1, 1, 2 at x = 0..3: slope 0.6, residual variance 0.1 of 2 degrees, 0.03^2 of 4; t(6) = 2.447."""
     got = fit_slope(np.exp(np.arange(4.0)), [np.exp([y]) for y in (0.0, 1.0, 1.0, 2.0)])
-    assert (got.value, got.error, got.dof) == pytest.approx((0.6, math.sqrt(0.1 / 5), 2))
-    assert got.interval(0.95) == pytest.approx((0.6 - 4.3027 * 0.1414214, 0.6 + 4.3027 * 0.1414214), abs=1e-4)
+    error = math.sqrt((2 * 0.1 + 4 * 0.0009) / 6 / 5)
+    assert (got.value, got.error, got.dof) == pytest.approx((0.6, error, 6))
+    assert got.interval(0.95) == pytest.approx((0.6 - 2.4469 * error, 0.6 + 2.4469 * error), abs=1e-4)
 
 
 def test_doubt_is_where_the_interval_touches_the_band() -> None:
@@ -738,7 +761,7 @@ def test_doubt_is_where_the_interval_touches_the_band() -> None:
 
 @pytest.mark.parametrize(
     ("scatter", "replicates", "least", "most"),
-    [(0.01, 1, 0.96, 1), (0.03, 1, 0.95, 0.99), (0.1, 1, 0.84, 0.92), (0.1, 3, 0.92, 0.98)],
+    [(0.01, 1, 0.96, 1), (0.03, 1, 0.95, 0.99), (0.1, 1, 0.78, 0.86), (0.1, 3, 0.92, 0.98)],
 )
 def test_intervals_cover_the_truth(scatter: float, replicates: int, least: float, most: float) -> None:
     """As often as they say, with the usual scatter or replicates; more scatter than usual takes some of it."""

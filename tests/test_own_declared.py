@@ -262,7 +262,7 @@ start = "{start}"
 order = 2.0
 
 [sweep]
-cells = [8, 10, 12, 16]
+cells = [8, 12, 16, 24, 32]
 """
 MAP = """
 files = "state{step:04d}.npz"

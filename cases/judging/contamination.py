@@ -82,7 +82,9 @@ def _shown(plain: _Mixed, square: _Mixed) -> float:
 
     What fits better as a sum is none: a leak of one sign has a square too.
     """
-    if square.other <= SHOWN**2 or square.dof == 0 or square.residual / 2 >= plain.residual:
+    if plain.residual <= EXACT or square.residual / 2 >= plain.residual:
+        return 0.0
+    if square.other <= SHOWN**2 or square.dof == 0:
         return 0.0
     most = np.hypot(square.residual, limit(square.residual / np.sqrt(square.dof), square.dof, SURE, 0.0))
     return float(np.sqrt(square.other)) if square.left(SHOWN**2) > most + EXACT else 0.0

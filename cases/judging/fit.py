@@ -13,7 +13,7 @@ from math import log
 import numpy as np
 from numpy.typing import NDArray
 
-from mpm_verify.cases.judging.scatter import EXACT, USUAL, about, limit, unusual
+from mpm_verify.cases.judging.scatter import EXACT, USUAL, about, limit, pooled
 
 Array = NDArray[np.float64]
 
@@ -23,6 +23,7 @@ AHEAD = 2  # times the levels of the window; at 1, h^2 / (1 + 128 h) with 3 % sc
 RESAMPLES, SEED = 2000, 20240229  # the seed is fixed: the same errors give the same verdict
 LEVELS = 4  # fewer cannot show that the order has settled
 ONE_SIGMA = 0.84  # confidence of one standard error, one-sided
+ROUGH = 2 * USUAL  # of a study that scatters as usual, residuals of three degrees of freedom reach this in 0.7 %
 BENT = 0.02  # scatter about a parabola that leaves a window to be judged, whatever it is about a line
 
 
@@ -87,7 +88,7 @@ class Slope:
     error
         Its standard error.
     dof
-        Degrees of freedom behind that error; infinite where the scatter is taken to be the usual one.
+        Degrees of freedom behind that error.
     """
 
     value: float
@@ -143,10 +144,8 @@ def fit_slope(h: Array, errors: Sequence[Array]) -> Slope:
         spread = np.array([len(e) - 1 for e in errors])  # outer levels weigh most: fewer degrees than sum(spread)
         dof = float((weight @ weight) ** 2 / (weight**4 / spread).sum())  # Satterthwaite (1946)
         return Slope(value, _bootstrap(weight, [np.log(e) for e in errors]), dof)
-    scatter, wide = about(x, y, 1), float(np.sqrt(x @ x))
-    if unusual(scatter, len(h) - 2):
-        return Slope(value, scatter / wide, float(len(h) - 2))
-    return Slope(value, max(scatter, USUAL) / wide, float("inf"))
+    scatter, dof = pooled(about(x, y, 1), len(h) - 2)
+    return Slope(value, scatter / float(np.sqrt(x @ x)), dof)
 
 
 def _bootstrap(weight: Array, logs: Sequence[Array]) -> float:
@@ -217,7 +216,7 @@ class Fit:
         """Whether the errors lie neither about a power of h nor about a smooth curve: one can only ask for more."""
         x, y = np.log(self.h), np.log(self.error)
         bent = about(x, y, 2) if len(x) > LEVELS else np.inf
-        return self.noise is None and unusual(self.rough, len(x) - 2) and self.rough > USUAL and bent > BENT
+        return self.noise is None and self.rough > ROUGH and bent > BENT
 
     @cached_property
     def pair(self) -> float:

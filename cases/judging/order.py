@@ -36,7 +36,7 @@ __all__ = ["Expectation", "Level", "Outcome", "Quantity", "Verdict", "judge", "j
 COUPLED = 0.10  # relative change of the finest error when dt is halved
 NO_PASS, DEFECT = 0.10, 0.50  # fractions of the finest error that are not of the expected order
 MOST = 0.15  # of the finest error, refuted: a leak of 14 % passes in 5 % of quick studies with 3 % scatter
-SURE, SHORT = 0.97, 0.985  # one-sided; on the shortest window more, as it is looked at beside longer ones
+SURE, SHORT = 0.962, 0.985  # one-sided; on the shortest window more, as it is looked at beside longer ones
 MAGNITUDE = 0.10  # relative distance from a recorded error that was carried over to other cells
 GROWTH = 2.0  # a flat sequence with 15 % scatter grows by 1.5 from its best level in 9 % of draws, by 2 in 0.2 %
 DROP = 0.3  # in the local order, of a stall: a fall that no scatter of a converging family shows
@@ -206,13 +206,13 @@ def _verdict(q: Quantity, told: Window, outcome: Outcome, reason: Reason) -> Ver
 
 def _gate(q: Quantity) -> Reason | None:
     """Reason why nothing can be judged yet, with the run that would decide; None if every gate is open."""
-    fit, ended = q.fit, next((end for level in q.ordered if (end := level.ended)), None)
+    fit, ended = q.fit.finest(LEVELS), q.missing
     if len(q.levels) < LEVELS:
         return Reason(ReasonCode.TOO_FEW_LEVELS, {"levels": LEVELS}, wanted=q.enough)
     if ended:
         return Reason(ReasonCode.LEVEL_MISSING, failed=(ended,), wanted=q.wanted(Action.FINISH, ended.h))
     if fit.lowest <= CLEAR * q.floor:
-        coarser = q.wanted(Action.REPLACE_FINEST, 2 * float(fit.h[0]))
+        coarser = q.wanted(Action.REPLACE_FINEST, 2 * float(q.fit.h[0]))
         return Reason(ReasonCode.NEAR_ROUND_OFF, {"error": fit.lowest, "floor": q.floor}, wanted=coarser)
     finest = float(fit.h[-1])
     if q.dt_halved is None or not np.isfinite(q.dt_halved):

@@ -44,8 +44,6 @@ class Row:
         Numbers of draws: PASS, FAIL, INCONCLUSIVE.
     reason
         Code of the commonest reason of those that did not pass.
-    distance, like
-        Distance from the sequence that it is most like, in standard deviations of the scatter, and its name.
     """
 
     sequence: str
@@ -57,8 +55,6 @@ class Row:
     failed: int
     left: int
     reason: str
-    distance: float
-    like: str = CLEAN.name
 
     @property
     def draws(self) -> int:
@@ -78,7 +74,7 @@ class Row:
     def least(self, other: "Row") -> float:
         """Least rate of wrong verdicts of any rule that is right on `other` as often as this one.
 
-        `other` is the sequence that it is most like, on the same levels and with the same scatter.
+        `other` has another right verdict, on the same levels and with the same scatter.
 
         References
         ----------
@@ -87,7 +83,7 @@ class Row:
         from scipy.special import ndtr, ndtri
 
         power = interval(other.right, other.draws)[0]
-        return float(ndtr(ndtri(power) - self.distance)) if power > 0 and self.sound != other.sound else 0.0
+        return float(ndtr(ndtri(power) - _distance(self, other))) if power > 0 else 0.0
 
 
 def interval(count: int, draws: int) -> tuple[float, float]:
@@ -128,8 +124,6 @@ def row(item: Item, draws: int, seed: int) -> Row:
         repeat * count[Outcome.FAIL],
         repeat * count[Outcome.INCONCLUSIVE],
         reasons.most_common(1)[0][0] if reasons else "",
-        _distance(h, known, scatter),
-        known.like,
     )
 
 
@@ -138,11 +132,11 @@ def named(name: str) -> Known:
     return next(one for one in KNOWN if one.name == name)
 
 
-def _distance(h: np.ndarray, known: Known, scatter: float) -> float:
-    """Distance from a multiple of the sequence that it is most like, the nearest one, in standard deviations."""
-    ratio = np.log(known.error(h) / named(known.like).error(h))
-    away = float(np.linalg.norm(ratio - ratio.mean()))
-    return away / scatter if scatter else float("inf") if away > 1e-9 else 0.0
+def _distance(one: Row, other: Row) -> float:
+    """Distance of a sequence from a multiple of the other, the nearest one, in standard deviations of the scatter."""
+    h = 1 / np.array(CELLS[one.levels], dtype=np.float64)
+    ratio = np.log(named(one.sequence).error(h) / named(other.sequence).error(h))
+    return float(np.linalg.norm(ratio - ratio.mean())) / one.scatter
 
 
 def measure(draws: int = DRAWS, seed: int = SEED, mapping: Callable[..., Iterable[Row]] = map) -> list[Row]:
@@ -206,10 +200,12 @@ def promises(rows: Sequence[Row]) -> list[Promise]:
 
 
 def floors(rows: Sequence[Row]) -> dict[Row, float]:
-    """Least rate of wrong verdicts of any rule, for each row; 0 where the row that it is like was not counted."""
-    known = {(one.sequence, one.levels, one.scatter): one for one in rows}
-    like = {one: known.get((one.like, one.levels, one.scatter)) for one in rows}
-    return {one: one.least(other) if other else 0.0 for one, other in like.items()}
+    """Least rate of wrong verdicts of any rule, for each row; 0 without scatter, where all can be told."""
+    found = dict.fromkeys(rows, 0.0)
+    for one in rows:
+        like = [o for o in rows if (o.levels, o.scatter) == (one.levels, one.scatter) and o.sound != one.sound]
+        found[one] = max((one.least(other) for other in like if one.scatter), default=0.0)
+    return found
 
 
 def _wrong(one: Row) -> float:

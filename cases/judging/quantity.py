@@ -8,7 +8,7 @@ from math import isclose
 import numpy as np
 
 from mpm_verify.cases.judging.fit import LEVELS, Fit
-from mpm_verify.cases.judging.records import Action, Expectation, Level, Recorded, Wanted
+from mpm_verify.cases.judging.records import Action, Ended, Expectation, Level, Recorded, Wanted
 
 LEAST_CELLS = 2  # of a study
 
@@ -45,9 +45,18 @@ class Quantity:
 
     @cached_property
     def fit(self) -> Fit:
-        """Fit of the levels that finished."""
+        """Fit of the levels that finished, but for what is no finer than an error of zero, if enough are."""
         done = [level for level in self.ordered if not level.ended]
+        positive = max((i + 1 for i, level in enumerate(done) if min(level.errors) == 0), default=0)
+        done = done[positive:] if len(done) - positive >= LEVELS else done
         return Fit(np.array([level.h for level in done]), [np.array(level.errors) for level in done])
+
+    @property
+    def missing(self) -> Ended | None:
+        """End of a level that a verdict needs, one among the finest; None where those finished."""
+        fine = self.fit.h[-LEVELS:]
+        needed = self.ordered if len(fine) < LEVELS else [one for one in self.ordered if one.h < fine[0]]
+        return next((end for level in needed if (end := level.ended)), None)
 
     @cached_property
     def known(self) -> list[tuple[Level, Recorded]]:

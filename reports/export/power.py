@@ -17,8 +17,9 @@ PAGE = """# Power and safety of the rule
 
 What the [rule](verdicts.md) says of {sequences} sequences of errors whose right verdict is known, on three sets of
 levels, with scatter of 0 to 15 % (a standard deviation of the logarithm of each error): {draws} draws of each. Second
-order is expected, and the errors are C = 1. A sequence is *sound* if it tends to second order and at most 10 % of its
-finest error is of another, and *bad* otherwise; so a floor of 1e−5 is sound down to h = 1/32 and bad at h = 1/128.
+order is expected, and the errors are C = 1. A sequence is *sound* if it tends to second order, has it on the finest
+pair of cells (1.8 to 2.3), and at most 10 % of its finest error is a leak or a floor, and *bad* otherwise. A floor of
+1e−5 is sound down to h = 1/32 and bad at h = 1/128; h² / (1 + 16 h), of order 1.62 at h = 1/32, the other way round.
 INCONCLUSIVE is never wrong; FAIL of a sound sequence and PASS of a bad one are. `verify power --out docs` writes this
 page, its [table](power.csv) and its figure, and ends with 1 if a promise is not kept.
 
@@ -34,9 +35,8 @@ A promise is kept unless the whole interval of its rate is on the wrong side.
 
 ## What no rule can tell
 
-A bad sequence may differ from clean second order by less than the scatter, and one that only tends to second order from
-h^1.5. The most powerful test of the two (Neyman & Pearson 1933), set to be right on the other as often as this rule,
-is wrong on it so often:
+A sequence may differ by less than the scatter from another with the other right verdict. The most powerful test of the
+two (Neyman & Pearson 1933), set to be right on the other as often as this rule, is wrong on it so often:
 
 {hidden}
 
@@ -71,7 +71,7 @@ def read(file: Path) -> list[Row]:
 
 def _row(found: dict[str, str]) -> Row:
     """Row from texts."""
-    kinds: dict[str, Any] = {"sound": "True".__eq__, "sequence": str, "levels": str, "reason": str, "like": str}
+    kinds: dict[str, Any] = {"sound": "True".__eq__, "sequence": str, "levels": str, "reason": str}
     kinds |= dict.fromkeys(("passed", "failed", "left"), int)
     return Row(**{name: kinds.get(name, float)(found[name]) for name in NAMES})
 

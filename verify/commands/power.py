@@ -100,8 +100,8 @@ def show(rows: "Sequence[Row]", out: Path, json_output: bool) -> None:
         console.print(table([row for row in rows if row.levels == levels]))
     console.print("\n[bold]what is promised[/bold]")
     console.print(plain(words.HEAD, [words.promise(one) for one in promises(rows)], 3))
-    console.print("\n[bold]what no rule can tell from clean second order, which it passes as often[/bold]")
-    for text in words.hidden(rows):
+    console.print("\n[bold]what no rule can tell[/bold]")
+    for text in words.hidden(rows) or ["nothing here"]:
         console.print(text)
     console.print(f"\ntable, page and figure: {out}", soft_wrap=True)
 
