@@ -21,11 +21,14 @@ from mpm_verify.solver.basis.mpm import fill as fill_mpm
 from mpm_verify.solver.elastic import Elastic
 from mpm_verify.solver.material import neo_hookean
 from mpm_verify.solver.material.mohr_coulomb import MohrCoulomb
+from mpm_verify.solver.model import Scheme
 from mpm_verify.solver.rate_material import RateMaterial
+from mpm_verify.solver.slabs import Slabs
 from mpm_verify.solver.smoothing import _base as smoothing
 from mpm_verify.solver.smoothing.deviatoric import Deviatoric
 from mpm_verify.solver.smoothing.fbar import Fbar
 from mpm_verify.solver.smoothing.volumetric import Volumetric
+from mpm_verify.solver.state import Particles
 from mpm_verify.solver.weights import FILL
 
 Patch = pytest.MonkeyPatch
@@ -559,6 +562,56 @@ def hidden_state(patch: Patch) -> None:
     patch.setitem(step.STRESS_UPDATES, "usl", stress_last)
 
 
+def patched(module: Any, name: str, made: Callable[[Any], Any]) -> Plant:
+    """Defect that replaces a function by one made of it."""
+    return lambda patch: patch.setattr(module, name, made(getattr(module, name)))
+
+
+def unnamed(original: Any) -> Any:
+    """A failed particle is told by its row."""
+
+    def fail(context: Any, row: int, *given: Any) -> None:
+        context.particles.id[row] = row
+        original(context, row, *given)
+
+    return fail
+
+
+def forgets(name: str) -> Callable[[Any], Any]:
+    """An array keeps its rows when the others are put in another order."""
+
+    def made(original: Any) -> Any:
+        def reorder(self: Any, order: Any) -> None:
+            kept = getattr(self, name)
+            original(self, order)
+            setattr(self, name, kept)
+
+        return reorder
+
+    return made
+
+
+def one_late(original: Any) -> Any:
+    """A slab starts one particle late."""
+
+    def sort(self: Any, *given: Any) -> None:
+        original(self, *given)
+        self.start[1] += 1
+
+    return sort
+
+
+def breathes(original: Any) -> Any:
+    """Damping of nothing takes a last digit."""
+
+    def equation_of_motion(m: Any) -> None:
+        original(m)
+        if m.damping:
+            m.grid.velocity_acceleration *= 1 + 1e-13
+
+    return equation_of_motion
+
+
 @dataclass(frozen=True)
 class Defect:
     """A defect: how it is planted, the tests that have to see it, and the method and material that have it."""
@@ -639,6 +692,14 @@ DEFECTS = {
     "exponent of three dimensions": Defect(exponent, ("smoothing_ratio",), material="hypoelastic"),
     "stress counted four times": Defect(to_grid(fourfold_stress), ("stable_step", "virtual_work")),
     "move not counted": Defect(to_particles(longer_move), ("budget",), material="hypoelastic"),
+    "inverted goes on": Defect(patched(step, "fail_if_inverted", lambda f: lambda m: None), ("inverted_ends",)),
+    "told by its row": Defect(patched(step, "fail", unnamed), ("inverted_ends",)),
+    "outside goes on": Defect(patched(step, "fail_if_outside", lambda f: lambda *given: None), ("left_ends",)),
+    "x keeps its rows": Defect(patched(Particles, "reorder", forgets("x")), ("any_order", "arrays_along")),
+    "carried keeps its rows": Defect(patched(Particles, "reorder", forgets("carried")), ("arrays_along",)),
+    "a slab starts late": Defect(patched(Slabs, "sort", one_late), ("slabs",)),
+    "a third of dt": Defect(patched(Scheme, "half", lambda f: lambda self, dt: f(self, dt) / 1.5), ("deformation",)),
+    "damping of nothing takes": Defect(patched(step, "equation_of_motion", breathes), ("undamped",)),
     "state that is not stored": Defect(hidden_state, ("restart",)),
 }
 

@@ -13,9 +13,7 @@ from mpm_verify.solver.cache_folder import private
 from mpm_verify.solver.source_hash import PACKAGE, TOP, closure, parse
 
 ROOMS = ("solver", "mms", "cases", "reports", "verify")
-CHECKS = tuple(
-    f"mpm_verify.verify.detecting.{name}" for name in ("child", "checks", "known", "rule", "states", "stored")
-)
+CHECKS = tuple(f"mpm_verify.verify.detecting.{name}" for name in ("child", "checks", "known", "rule", "stored"))
 
 
 @cache

@@ -1,6 +1,6 @@
 """All exact tests of a method and a material; `run` is what a campaign calls."""
 
-from mpm_verify.cases.exact import motion, smoothing, state, step, symmetry, walls, weights
+from mpm_verify.cases.exact import motion, smoothing, state, step, symmetry, unusual, walls, weights
 from mpm_verify.cases.exact.body import Subject
 from mpm_verify.cases.exact.groups import GROUPS
 from mpm_verify.mms.constitutive import driver, history, stress
@@ -14,6 +14,7 @@ GRID = {
     "symmetry": symmetry.tests,
     "smoothing": smoothing.tests,
     "state": state.tests,
+    "unusual": unusual.tests,
 }
 POINT = {"stress": stress.tests, "history": history.tests}  # of the constitutive model alone
 

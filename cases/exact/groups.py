@@ -15,6 +15,7 @@ GROUPS = {
     "smoothing": ("smoothing_means", "smoothing_constants", "smoothing_adjoint", "smoothing_twice", "smoothing_parts",
                   "smoothing_uniform", "smoothing_ratio"),
     "state": ("restart", "step_limit", "stable_step"),
+    "unusual": ("inverted_ends", "left_ends", "any_order", "arrays_along", "slabs", "deformation", "undamped"),
 }  # fmt: skip
 
 

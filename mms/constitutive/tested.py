@@ -41,6 +41,8 @@ class Part(StrEnum):
     SMOOTHING = "smoothing"
     STATE = "state"
     TIME_STEP = "time_step"
+    ENDS = "ends"
+    ROWS = "rows"
     BUDGET = "budget"
 
 

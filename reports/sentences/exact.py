@@ -20,6 +20,7 @@ HEADINGS = {
     "history": "Memory, strength and cut-off",
     "smoothing": "Smoothing",
     "state": "Stored state and step limit",
+    "unusual": "States that no usual run has",
 }
 HELD = {
     "moments": "Σ N = 1, Σ dN = 0, Σ N x_i = x_p and Σ dN ⊗ x_i = I",
@@ -68,6 +69,13 @@ HELD = {
     "restart": "a run that goes on from stored arrays gives the same bits",
     "step_limit": "1.05 of the step limit is refused, and 0.95 is not",
     "stable_step": "kinetic energy does not grow below the limit",
+    "inverted_ends": "a particle that is inverted ends the step, and is named",
+    "left_ends": "a particle beyond the grid ends the step",
+    "any_order": "particles in any order give the same step",
+    "arrays_along": "every array goes along when rows are put in another order",
+    "slabs": "each slab holds its own particles",
+    "deformation": "F of a uniform velocity gradient: (I + A) F, and (I + A + A²/2) F",
+    "undamped": "damping by nothing is none",
 }
 PARTS = {
     Part.WEIGHTS: "the weights of the basis: its fill in solver/basis",
@@ -86,6 +94,8 @@ PARTS = {
     Part.SMOOTHING: "solver/smoothing",
     Part.STATE: "something that a step needs and the arrays of the particles do not hold",
     Part.BUDGET: "what moves, strains or damps the body without being counted, or solver/energy_budget.py",
+    Part.ENDS: "what ends a run: solver/failure.py and who raises it",
+    Part.ROWS: "rows of particles: reorder in solver/state.py, solver/slabs.py",
     Part.TIME_STEP: "check_time_step in solver/model.py, or the wave speed of the constitutive model",
 }
 REASONS = {

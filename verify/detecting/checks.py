@@ -16,7 +16,7 @@ from mpm_verify.cases.harness.contract import case_named
 from mpm_verify.cases.harness.runner import check_result
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.cases.judging.records import Outcome
-from mpm_verify.verify.detecting import known, rule, states, stored
+from mpm_verify.verify.detecting import known, rule, stored
 
 PASS = str(Outcome.PASS)
 Answer = tuple[str, str]
@@ -148,7 +148,6 @@ CHECKS: Mapping[str, Callable[[Subject], Answer]] = {
     "wave_bar": wave,
     "column": column("column", damping=(0.05,)),
     "smoothing": column("smoothing", smoothing=("full",), damping=(0.05,), damping_kind=("objective",)),
-    "states": lambda s: states.ask(s.method),
     "norms": lambda s: known.norms(),
     "rule": lambda s: rule.ask(),
     "store": lambda s: stored.store(s.work),
