@@ -38,6 +38,7 @@ MEANT = {
     "a parameter": (["mms", "--solution", "axis_aligned:phas=1"], "phase"),
     "a study": (["sweep", "figure33"], "figure3"),
     "a case": (["schema", "colum"], "column"),
+    "a schema": (["schema", "case-foldr"], "case-folder"),
     "an audit": (["audit", "swirll"], "swirl"),
 }
 

@@ -19,6 +19,7 @@ from mpm_verify.cases.detect.run import CHECKS, Run
 from mpm_verify.cases.harness.contract import case_named
 from mpm_verify.reports.sentences.detect import quote
 from mpm_verify.solver.source_hash import TOP
+from mpm_verify.verify.commands.detect import told_list
 from mpm_verify.verify.detecting import rule
 from mpm_verify.verify.terminal import detect as terminal
 
@@ -143,6 +144,11 @@ def test_blind_needs_a_key(tmp_path: Path) -> None:
     done = subprocess.run(command, capture_output=True, text=True, cwd=TOP.parent, timeout=60)
     assert done.returncode == 2
     assert "--blind and --key FILE belong together" in done.stderr
+
+
+def test_the_list_is_one_json_document_too(capsys: pytest.CaptureFixture[str]) -> None:
+    assert told_list(json_output=True) == 0
+    assert [one["name"] for one in json.loads(capsys.readouterr().out)] == list(defects())
 
 
 @pytest.mark.slow

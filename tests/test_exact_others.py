@@ -258,6 +258,7 @@ def test_a_study_of_a_function(tmp_path: Path) -> None:
         (["--solver", "true {case} {out}", "--test", "thro"], "did you mean throw"),
         (["--solver", "true {case} {out}", "--material", "linear_elastic"], "small strains"),
         (["--solver", "true {case}"], "{out}"),
+        (["--solver", "true {case} {out}", "--method", "gimp"], "leave it out beside --solver"),
     ],
 )
 def test_bad_input_is_one_line(words: list[str], said: str, verify: Call) -> None:

@@ -36,7 +36,7 @@ def detect(
     from mpm_verify.verify.run import Settings, conduct, study_of, usage
 
     if listed:
-        return told_list()
+        return told_list(bool(more.get("json_output")))
     with usage():
         from mpm_verify.cases.harness.build import Asked
 
@@ -66,10 +66,16 @@ def named(mutants: int, seed: int) -> Path | None:
     return Path("results") / f"detect-mutants-{mutants}-{seed}" if mutants else None
 
 
-def told_list() -> int:
-    """Print the defects of the tables."""
+def told_list(json_output: bool) -> int:
+    """Print the defects of the tables, in lines or as JSON."""
+    import json
+    from dataclasses import asdict
+
     from mpm_verify.cases.detect.defect import defects
 
+    if json_output:
+        typer.echo(json.dumps([asdict(one) for one in defects().values()], indent=1))
+        return 0
     for one in defects().values():
         typer.echo(f"{one.name:28} {one.kind:11} {one.by:12} {one.file}")
     return 0

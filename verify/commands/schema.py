@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
-from mpm_verify.solver.plugins import CASES, available
+from mpm_verify.solver.plugins import CASES, available, meant
 from mpm_verify.verify.choices import completing
 from mpm_verify.verify.terminal.output import printing
 
@@ -44,6 +44,8 @@ def derived(case: str) -> dict[str, Any]:
         return of_comparison()
     from mpm_verify.reports.export.document import schema as of_document
 
+    if not case.endswith(".py") and case not in names():
+        raise ValueError(f"no schema {case!r}{meant(case, names())}; choose from {', '.join(names())}, or give a file")
     return of_document(case)
 
 
