@@ -17,12 +17,14 @@ from mpm_verify.cases.solvers.command import PYTHON, program
 from mpm_verify.cases.solvers.naming import method_of, version_of
 from mpm_verify.mms.cells import fitting, ratio
 from mpm_verify.mms.discretisation import dimension
+from mpm_verify.mms.duration import lasting
 from mpm_verify.mms.energy import check_energy
 from mpm_verify.solver.layout import per_side
 from mpm_verify.solver.plugins import (
     LAYOUTS,
     MATERIALS,
     METHODS,
+    SMOOTHINGS,
     SOLUTIONS,
     TRANSFERS,
     create,
@@ -38,7 +40,9 @@ __all__ = ["AXES", "JUDGED", "NORMS", "QUANTITIES", "QUICK", "Result", "Run"]
 
 JUDGED = (JUDGED_QUANTITY,)
 REFUTES = tuple((quantity, "rms") for quantity in ("v", "F", "sigma"))
-OURS = ("transfer", "stress", "layout", "staggered", "offset")  # fields that a solver of somebody else does not take
+OURS = (  # fields that a solver of somebody else does not take
+    "transfer", "stress", "layout", "staggered", "offset", "damping", "manufacture", "smoothing"
+)  # fmt: skip
 ALONE = ("start", "columns", "precision")  # and fields that the reference solver does not take
 THEIRS = {"cells": (8, 16, 32, 64), "ppc": (4,)}  # values that nobody asks for of such a solver
 SCHEME = {"transfer": "flip", "stress": "usl", "layout": "uniform"}  # the one that expectations are registered for
@@ -66,6 +70,8 @@ def canonical(values: dict[str, Any]) -> dict[str, Any]:
     values["material"] = canonical_name(MATERIALS, values.get("material") or create(SOLUTIONS, solution).material)
     values["transfer"] = canonical_name(TRANSFERS, values.get("transfer", Run.transfer))
     values["layout"] = canonical_name(LAYOUTS, values.get("layout", Run.layout))
+    smoothing = values.get("smoothing", Run.smoothing)
+    values["smoothing"] = smoothing if smoothing == "none" else canonical_name(SMOOTHINGS, smoothing)
     if values.get("columns"):
         values["columns"] = column_map.read(values["columns"])
     if values.get("solver"):
@@ -121,11 +127,11 @@ def check_ours(runs: Sequence[Run]) -> None:
 
 def check_solutions(runs: Sequence[Run]) -> None:
     """Raise ValueError with one line for a solution, material or layout that no solver can run."""
-    cells: dict[tuple[str, str, str], set[int]] = {}
+    cells: dict[tuple[str, str, str, float], set[int]] = {}
     for run in runs:
-        cells.setdefault((run.solution, run.material, run.layout), set()).add(run.cells)
-    for (specification, model, layout), counts in cells.items():
-        solution, material = create(SOLUTIONS, specification), create(MATERIALS, model)
+        cells.setdefault((run.solution, run.material, run.layout, run.periods), set()).add(run.cells)
+    for (specification, model, layout, periods), counts in cells.items():
+        solution, material = lasting(create(SOLUTIONS, specification), periods), create(MATERIALS, model)
         for run in (run for run in runs if run.solution == specification):
             per_side(run.ppc, dimension(solution))
         check_energy(material)
@@ -134,7 +140,8 @@ def check_solutions(runs: Sequence[Run]) -> None:
             from mpm_verify.mms.check import check as check_solution  # derives the fields: some tenths of a second
 
             check_solution(solution, material, tuple(sorted(counts)))
-        mine = [run for run in runs if (run.solution, run.material) == (specification, model) and not run.force]
+        of = specification, model, periods
+        mine = [run for run in runs if (run.solution, run.material, run.periods) == of and not run.force]
         if mine:
             check_time_steps(mine, sorted({run.courant for run in mine}))
 

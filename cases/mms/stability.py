@@ -11,6 +11,7 @@ import numpy as np
 from mpm_verify.cases.mms.exact import manufactured
 from mpm_verify.cases.mms.run import Run
 from mpm_verify.mms.discretisation import dimension, time_steps, width
+from mpm_verify.mms.duration import lasting
 from mpm_verify.mms.manufacture import Manufactured
 from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS, create, is_file, label, parameters_of, split
 
@@ -23,13 +24,15 @@ LEAST_COURANT = 1e-3
 def check_time_steps(runs: Sequence[Run], courants: Sequence[float]) -> None:
     """Raise ValueError, with what to type, where a run takes a step above the stable one: dt > dx / (c + |v|).
 
-    The runs are of one solution in one material; `courants` are those that were asked for, the largest last. What
-    passes here also runs: |v| is the largest over the body in the half step before the start.
+    The runs are of one solution in one material over one duration; `courants` are those that were asked for, the
+    largest last. What passes here also runs: |v| is the largest over the body in the half step before the start.
     """
     specification, model = runs[0].solution, runs[0].material
-    solution, material = create(SOLUTIONS, specification), create(MATERIALS, model)
+    solution, material = lasting(create(SOLUTIONS, specification), runs[0].periods), create(MATERIALS, model)
     steps = {
-        (run.cells, run.courant_number): time_steps(solution, width(solution) / run.cells, run.courant_number)
+        (run.cells, run.courant_number): time_steps(
+            solution, width(solution) / run.cells, run.courant_number, whole=run.whole_steps
+        )
         for run in runs
     }
     longest = max(count for count, _ in steps.values())
