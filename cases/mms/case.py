@@ -12,6 +12,7 @@ from mpm_verify.cases.judging.records import Expectation
 from mpm_verify.cases.mms.expectations import JUDGED_QUANTITY, expected
 from mpm_verify.cases.mms.run import AXES, NORMS, QUANTITIES, QUICK, SOLID, Result, Run
 from mpm_verify.cases.mms.stability import check_time_steps
+from mpm_verify.cases.mms.variants import axes, variant
 from mpm_verify.cases.solvers import column_map
 from mpm_verify.cases.solvers.command import PYTHON, program
 from mpm_verify.cases.solvers.naming import method_of, version_of
@@ -45,6 +46,7 @@ OURS = (  # fields that a solver of somebody else does not take
 )  # fmt: skip
 ALONE = ("start", "columns", "precision")  # and fields that the reference solver does not take
 THEIRS = {"cells": (8, 16, 32, 64), "ppc": (4,)}  # values that nobody asks for of such a solver
+NAMED = ("periods", "damping", "manufacture", "smoothing", "time_step")  # axes that a title tells
 SCHEME = {"transfer": "flip", "stress": "usl", "layout": "uniform"}  # the one that expectations are registered for
 
 
@@ -57,7 +59,15 @@ def title(runs: Sequence[Run]) -> str:
     words = [label(method) if is_file(method) else method.upper() for method in methods]
     named = " and ".join(words) if len(words) < 4 else f"{len(words)} methods"
     several = "solutions" if len(solutions) > 1 else "solution"
-    return f"{named} against the manufactured {several} {', '.join(map(label, solutions))}"
+    return f"{named} against the manufactured {several} {', '.join(map(label, solutions))}{beside(runs)}"
+
+
+def beside(runs: Sequence[Run]) -> str:
+    """Values of the axes of the title that are not as usual: `, damping 0.05`."""
+    found = {name: dict.fromkeys(getattr(run, name) for run in runs) for name in NAMED}
+    told = [f"{name} {' and '.join(map(str, values))}".replace("_", " ") for name, values in found.items()
+            if list(values) != [getattr(Run, name)]]  # fmt: skip
+    return "".join(f", {text}" for text in told)
 
 
 def canonical(values: dict[str, Any]) -> dict[str, Any]:
@@ -114,7 +124,10 @@ def check(runs: Sequence[Run]) -> None:
 
 
 def check_ours(runs: Sequence[Run]) -> None:
-    """Raise ValueError for three dimensions, which the reference solver does not have."""
+    """Raise ValueError for what the reference solver does not have: three dimensions, a smoothing of the material."""
+    for smoothing, material in dict.fromkeys((run.smoothing, run.material) for run in runs):
+        if smoothing != "none":
+            create(SMOOTHINGS, smoothing).check(create(MATERIALS, material))
     for run in runs:
         own = is_file(run.solution) and dimension(create(SOLUTIONS, run.solution)) == 3  # told by its check
         if run.dim == 3 and not own:
@@ -190,8 +203,10 @@ def expectation(run: Run, quantity: str, norm: str) -> Expectation | None:
         return declared(run.order, quantity, norm, " along dt ~ h2" * run.tied)
     if run.start or any(getattr(run, name) != usual for name, usual in SCHEME.items()):
         return None
-    usual = run.courant == Run.courant and run.time_step == Run.time_step and run.staggered
-    return expected(run.method, run.solution, run.material, run.ppc, quantity, norm, usual, bool(run.solver))
+    beside = axes(run)
+    usual = run.courant == Run.courant and run.time_step == Run.time_step and run.staggered and not beside
+    plain = expected(run.method, run.solution, run.material, run.ppc, quantity, norm, usual, bool(run.solver))
+    return variant(run, quantity, norm, plain) if beside else plain
 
 
 def declared(order: float, quantity: str, norm: str, path: str = "") -> Expectation | None:

@@ -27,7 +27,7 @@ STARTS = tuple(f"{v}.{F}.{b}" for v in ("half", "zero") for F in ("now", "before
 PRECISIONS = ("double", "single")
 PATHS = ("h", "h2", "printed")  # of dt as cells get finer
 BEGIN = 8  # cells at which the first two have the same C dt / dx
-INSIDE = ("", "damping")  # what can be put into the problem
+INSIDE = ("none", "damping")  # what can be put into the problem
 AXES = {"cells": (8, 16, 32, 64, 128), "ppc": (1, 4, 9)}  # values that nobody asks for; of the rest the defaults
 QUICK: dict[str, tuple[Any, ...]] = {
     "solution": ("axis_aligned", "clamped_shear"), "cells": (8, 12, 16, 24, 32), "ppc": (4,)
@@ -85,7 +85,9 @@ class Run(RunRecord):
     )
     periods: float = axis(0.0, "Periods of the solution that a run lasts; 0: the duration that it states, mostly one.")
     damping: float = axis(0.0, "Local damping, the fraction of the unbalanced force at each node: 0.05 for 5 %.")
-    manufacture: str = axis("", "What is put into the problem, so that the order is kept: damping.", choices=INSIDE[1:])
+    manufacture: str = axis(
+        "none", "Put into the problem, so that the motion stays the exact one: none, damping.", choices=INSIDE
+    )
     smoothing: str = axis("none", "none, or smoothing of the stress of the internal force.", SMOOTHINGS)
     time_limit: float = axis(600.0, "Seconds that a run of a solver of your own may take.", named=False)
     memory_limit: float = axis(0.0, "Address space that it may have, MB; 0: any.", named=False)
@@ -114,8 +116,8 @@ class Run(RunRecord):
         if not 0 <= self.damping <= 0.9:
             raise ValueError(f"damping = {self.damping} cannot be run; choose 0 to 0.9, 0.05 for 5 %")
         if self.manufacture not in INSIDE:
-            raise ValueError(f"manufacture = {self.manufacture!r} must be {', '.join(INSIDE[1:])}, or left out")
-        if self.manufacture and not self.damping:
+            raise ValueError(f"manufacture = {self.manufacture!r} must be one of {', '.join(INSIDE)}")
+        if self.manufacture != "none" and not self.damping:
             raise ValueError("manufacture = 'damping' has no damping to put into the problem; give --damping 0.05 too")
         if not (0 <= self.order <= 10 and self.time_limit > 0 and self.memory_limit >= 0):
             raise ValueError("order must be from 0 to 10, time_limit above 0, and memory_limit 0 or more")
@@ -149,6 +151,11 @@ class Run(RunRecord):
     def damping_inside(self) -> float:
         """Damping that the problem has too."""
         return self.damping if self.manufacture == "damping" else 0.0
+
+    @property
+    def damping_outside(self) -> float:
+        """Damping that the problem does not have."""
+        return self.damping - self.damping_inside
 
     @property
     def tied(self) -> bool:

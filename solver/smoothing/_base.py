@@ -76,11 +76,13 @@ class Smoothing:
         """Raise ValueError for a material that cannot be smoothed: of a function of F the stress of the force can."""
         if material.rate is None and self.of == "stress" and self.into == "force":
             return
-        if material.rate not in RATES:
+        if material.rate is None:
             raise ValueError(
-                f"smoothing must have a material in rate form with a rate of {', '.join(RATES)}; of another, only the "
-                "stress of the force can be smoothed: of=stress"
+                "smoothing must have a material in rate form: a function of F has no rate and no history, only the "
+                "stress of its force can be smoothed; take volumetric:of=stress, deviatoric:of=stress or full:of=stress"
             )
+        if material.rate not in RATES:
+            raise ValueError(f"smoothing must have a material in rate form with a rate of {', '.join(RATES)}")
 
     def stress(self, context: Context) -> None:
         """Write particles.sigma_smoothed (P,4), the stress of the internal force, at the start of a step."""
