@@ -125,6 +125,9 @@ def check(runs: Sequence[Run]) -> None:
 
 def check_ours(runs: Sequence[Run]) -> None:
     """Raise ValueError for what the reference solver does not have: three dimensions, a smoothing of the material."""
+    inside = [run for run in runs if run.manufacture != "none"]
+    if inside and not any(run.damping for run in inside):
+        raise ValueError("manufacture = 'damping' has no damping to put into the problem; give --damping 0.05 too")
     for smoothing, material in dict.fromkeys((run.smoothing, run.material) for run in runs):
         if smoothing != "none":
             create(SMOOTHINGS, smoothing).check(create(MATERIALS, material))

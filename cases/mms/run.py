@@ -117,8 +117,6 @@ class Run(RunRecord):
             raise ValueError(f"damping = {self.damping} cannot be run; choose 0 to 0.9, 0.05 for 5 %")
         if self.manufacture not in INSIDE:
             raise ValueError(f"manufacture = {self.manufacture!r} must be one of {', '.join(INSIDE)}")
-        if self.manufacture != "none" and not self.damping:
-            raise ValueError("manufacture = 'damping' has no damping to put into the problem; give --damping 0.05 too")
         if not (0 <= self.order <= 10 and self.time_limit > 0 and self.memory_limit >= 0):
             raise ValueError("order must be from 0 to 10, time_limit above 0, and memory_limit 0 or more")
 
