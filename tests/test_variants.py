@@ -356,3 +356,15 @@ def test_axes_are_fields_of_a_run() -> None:
     digests: Callable[..., str] = lambda **beside: replace(USUAL, **beside).digest  # noqa: E731
     found = {digests(), digests(damping=0.1), digests(damping=0.1, manufacture="damping"), digests(periods=2.0)}
     assert len(found | {digests(smoothing="full:of=stress"), digests(time_step="printed")}) == 6
+
+
+def test_no_recorded_refinement_is_against_what_is_registered() -> None:
+    """Each passes on its seven levels but two that have not settled: smoothing by cells on axis_aligned scatters."""
+    refinements = {key(run): run for run in variants()}
+    found = {name: judged([errors["u"] for _, errors in rows], expectation(refinements[name], "u", "rms"))
+             for name, rows in table().items()}  # fmt: skip
+    open_ = {name for name, verdict in found.items() if verdict[0] is not Outcome.PASS}
+    assert {found[name] for name in open_} == {(Outcome.INCONCLUSIVE, ReasonCode.NOT_SETTLED)}
+    assert {(name[0], name[-1]) for name in open_} == {
+        ("axis_aligned", "volumetric:of=stress"), ("axis_aligned", "full:of=stress")
+    }  # fmt: skip
