@@ -29,9 +29,10 @@ def time_steps(solution: Any, dx: float, courant: float, whole: bool = False) ->
 
     `whole` steps have that length, and the last one may end later.
     """
-    dt = courant * dx / solution.C
-    steps = ceil(solution.duration / dt * (1 - 1e-12))
-    return steps, dt if whole else solution.duration / steps
+    steps = ceil(solution.duration / (courant * dx / solution.C) * (1 - 1e-12))
+    if whole:
+        return steps, courant * dx / solution.C
+    return steps, solution.duration / steps
 
 
 def output_steps(steps: int, count: int) -> tuple[int, ...]:

@@ -343,12 +343,15 @@ def test_refusals(
     assert says in one_line(caller(monkeypatch, capsys, tmp_path)("mms", *words, "--dry-run"))
 
 
-def test_the_title_tells_what_is_not_usual() -> None:
-    asked = Asked("mms", {"damping": (0.0, ALPHA), "cells": (8, 16), "ppc": (4,)})
-    study = build(asked, "verify mms")
-    assert study.title.endswith("axis_aligned, damping 0.0 and 0.05")
-    assert set(study.axes) >= {"damping", "cells"}
-    assert title([USUAL]) == "CPDI against the manufactured solution axis_aligned"
+def test_the_title_tells_what_all_runs_have() -> None:
+    """And not what is an axis of the study: labels tell that."""
+    asked = {"damping": (ALPHA,), "cells": (8, 16), "ppc": (4,)}
+    usual = "CPDI against the manufactured solution axis_aligned"
+    assert build(Asked("mms", asked), "verify mms").title == f"{usual}, damping 0.05"
+    study = build(Asked("mms", {**asked, "damping": (0.0, ALPHA)}), "verify mms")
+    assert (study.title, study.axes) == (usual, ("cells", "courant", "damping"))
+    assert title([USUAL]) == usual
+    assert title([replace(USUAL, time_step="printed")]) == f"{usual}, time step printed"
 
 
 def test_axes_are_fields_of_a_run() -> None:

@@ -63,11 +63,10 @@ def title(runs: Sequence[Run]) -> str:
 
 
 def beside(runs: Sequence[Run]) -> str:
-    """Values of the axes of the title that are not as usual: `, damping 0.05`."""
-    found = {name: dict.fromkeys(getattr(run, name) for run in runs) for name in NAMED}
-    told = [f"{name} {' and '.join(map(str, values))}".replace("_", " ") for name, values in found.items()
-            if list(values) != [getattr(Run, name)]]  # fmt: skip
-    return "".join(f", {text}" for text in told)
+    """Values of the axes of the title that all runs have and that are not usual: `, damping 0.05`."""
+    found = {name: {getattr(run, name) for run in runs} for name in NAMED}
+    return "".join(f", {name.replace('_', ' ')} {values.pop()}" for name, values in found.items()
+                   if len(values) == 1 and values != {getattr(Run, name)})  # fmt: skip
 
 
 def canonical(values: dict[str, Any]) -> dict[str, Any]:
