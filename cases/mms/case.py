@@ -55,7 +55,8 @@ def title(runs: Sequence[Run]) -> str:
     methods, solutions = (tuple(dict.fromkeys(getattr(run, key) for run in runs)) for key in ("method", "solution"))
     if any(run.solver for run in runs):
         programs = dict.fromkeys(program(run.solver) for run in runs)
-        return f"{' and '.join(programs)} against the manufactured solution {', '.join(map(label, solutions))}"
+        named = " and ".join(programs)
+        return f"{named} against the manufactured solution {', '.join(map(label, solutions))}{beside(runs)}"
     words = [label(method) if is_file(method) else method.upper() for method in methods]
     named = " and ".join(words) if len(words) < 4 else f"{len(words)} methods"
     several = "solutions" if len(solutions) > 1 else "solution"
