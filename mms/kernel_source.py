@@ -9,6 +9,7 @@ from mpm_verify.mms.hoist import Hoist
 from mpm_verify.mms.printed import printed
 from mpm_verify.mms.straight_line import assignments, factors, whole_numbers
 
+T_VELOCITY = sp.Symbol("t_velocity", real=True)  # time level of v, half a step before t where a run is staggered
 HEADER = '''"""Generated from a manufactured solution; not for editing."""
 import math
 from mpm_verify.solver._jit import BLOCK, kernel
@@ -26,7 +27,7 @@ def write(fields: Fields) -> list[str]:
     Of two coordinates, as the reference solver has them.
     """
     assert len(fields.X) == 2
-    tv = sp.Symbol("t_velocity", real=True)
+    tv = T_VELOCITY
     hoist = Hoist(fields.X, (fields.t, tv))
     inner = {symbol: hoist(e) for symbol, e in fields.inner.items()}
     rows = [hoist(e) for e in fields.u]

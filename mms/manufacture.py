@@ -4,7 +4,7 @@ import json
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -31,12 +31,15 @@ class Manufactured:
         What they are derived from, at the first use.
     folder
         Folder of the kernel cache where printed functions are kept; none where they are printed anew.
+    damping
+        Fraction of the unbalanced force that local damping takes, with which the motion is the exact one.
     """
 
     solution: "Solution"
     material: Energy
     rho0: float
     folder: str = ""
+    damping: float = 0.0
 
     @cached_property
     def fields(self) -> "Fields":
@@ -44,6 +47,14 @@ class Manufactured:
         from mpm_verify.mms.derive import derive
 
         return derive(self.solution, self.material, self.rho0)
+
+    def forced(self, t_velocity: Any = None) -> "Fields":
+        """Expressions with the body force that damping needs, against the velocity of `t_velocity`; None: of t."""
+        if not self.damping:
+            return self.fields
+        from mpm_verify.mms.damping import damped
+
+        return damped(self.fields, self.damping, self.fields.t if t_velocity is None else t_velocity)
 
     def x(self, X: Floats, t: float) -> Floats:
         """Position x (P,d), a length."""
@@ -76,7 +87,7 @@ class Manufactured:
 
     @cached_property
     def b(self) -> Field:
-        """Body force per mass b (P,d), length per time squared."""
+        """Body force per mass b (P,d), length per time squared; with damping against the velocity of the same time."""
         return self._function("b", 1)
 
     @cached_property
@@ -91,16 +102,16 @@ class Manufactured:
         return kept(self.folder, name, make) if self.folder else make()
 
     def _kernel_source(self) -> str:
-        from mpm_verify.mms.kernel_source import write
+        from mpm_verify.mms.kernel_source import T_VELOCITY, write
 
-        return json.dumps(write(self.fields))
+        return json.dumps(write(self.forced(T_VELOCITY)))
 
     def _function(self, name: str, rank: int) -> Field:
         """Function that a field is printed as, of vectors and tensors of a rank, or of 0: as they are listed."""
         shape = (dimension(self.solution),) * rank or (-1,)
 
         def source() -> str:
-            f = self.fields
+            f = self.forced()
             if len(f.X) == 3:  # in coordinates alone its expressions are so long that b takes ten seconds
                 return printed((*f.X, f.t), getattr(f, name), f.inner)
             return printed((*f.X, f.t), f.full(getattr(f, name)))
@@ -114,7 +125,9 @@ class Manufactured:
         return evaluate
 
 
-def manufacture(solution: "Solution", material: Energy, rho0: float, name: str = "") -> Manufactured:
+def manufacture(
+    solution: "Solution", material: Energy, rho0: float, name: str = "", damping: float = 0.0
+) -> Manufactured:
     """Make exact fields, and the body force that they need, from a displacement.
 
     The source term comes from the material's energy by differentiation, never from the stress the solver computes.
@@ -129,6 +142,8 @@ def manufacture(solution: "Solution", material: Energy, rho0: float, name: str =
         Density at reference, in the units of the material.
     name
         Hash of all that the first three stand for: what is derived is kept on disk by it. Derived anew without one.
+    damping
+        Fraction of the unbalanced force that local damping takes, see mms/damping.py.
 
     Returns
     -------
@@ -141,7 +156,8 @@ def manufacture(solution: "Solution", material: Energy, rho0: float, name: str =
         For a material without an energy; it names those that have one.
     """
     check_energy(material)
-    made = Manufactured(solution, material, rho0, folder(f"{name} {rho0!r}", __name__) if name else "")
+    kept_by = f"{name} {rho0!r}" + (f" damping {damping!r}" if damping else "")
+    made = Manufactured(solution, material, rho0, folder(kept_by, __name__) if name else "", damping)
     if not name:
         made.fields  # noqa: B018  what cannot be derived is said here, not at the first use
     return made

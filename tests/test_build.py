@@ -34,7 +34,8 @@ SAMPLES: dict[str, dict[str, str]] = {  # of each case two values of each field,
         "solver": f"{sys.executable} {{{{case}}}} {{{{out}}}}", "solver_version": "1,2", "order": "2,1",
         "time_limit": "60,120", "memory_limit": "0,1000", "start": "half.now.start,zero.now.end",
         "precision": "double,single", "time_step": "h,h2", "columns": MAP.replace("{", "{{").replace("}", "}}"),
-        "dim": "2,3",
+        "dim": "2,3", "periods": "0.125,2", "damping": "0,0.05", "manufacture": "none,damping",
+        "smoothing": "none,volumetric:of=stress",
     },
     "wave_bar": {
         "method": "cpdi,mpm", "material": "neo_hookean,linear_elastic", "cells": "8,16", "ppc": "4,9",
@@ -69,6 +70,7 @@ OTHER = {"solver": f"{sys.executable} {{{{case}}}} {{{{out}}}}"}
 WITH: dict[tuple[str, str], dict[str, str]] = {  # what else has to be asked for
     ("element", "path"): {"test": "path"},
     ("element", "units"): {"test": "path", "path": "{here}/one.csv"},
+    ("mms", "manufacture"): {"damping": "0.05"},
     ("mms", "start"): {"solver": f"{sys.executable} {{{{case}}}} {{{{out}}}}"},
     ("mms", "dim"): {"solver": f"{sys.executable} {{{{case}}}} {{{{out}}}}"},
     ("mms", "precision"): {"solver": f"{sys.executable} {{{{case}}}} {{{{out}}}}"},

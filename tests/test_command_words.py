@@ -29,7 +29,7 @@ def verify(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], 
 
 MEANT = {
     "a command": (["metods"], "methods"),
-    "an option": (["mms", "--metod", "mpm"], "--method"),
+    "an option": (["mms", "--materal", "x"], "--material"),
     "a method": (["mms", "--method", "cpdi,gmp"], "gimp"),
     "a method in capitals": (["mms", "--method", "CPDI2"], "cpdi2"),
     "a solution": (["mms", "--solution", "axis_alined"], "axis_aligned"),

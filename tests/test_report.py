@@ -207,6 +207,7 @@ def test_study_with_one_method(tmp_path: Path, method: str) -> None:
     met = ", 2 of them as a registered non-convergence" * (method == "mpm")
     assert f"2 of 2 judged quantities PASS{met}." in said
     assert words.method("mpm" if method == "cpdi" else "cpdi") + ", 4 per cell" not in said
+    assert ("The norm explains this, and so does the duration" in said) == (method == "mpm")
 
 
 @pytest.mark.slow

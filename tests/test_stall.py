@@ -168,6 +168,25 @@ def test_round_off(floor: float, named: bool) -> None:
     assert (CauseCode.ROUND_OFF in named_in(found)) == named
 
 
+def test_damping_that_the_problem_does_not_have() -> None:
+    """Without another run it is present with its own size; one without it shows it, or excludes it."""
+    crossed = {"crossings": (16.0,) * 4}
+    found = stall(damping=0.05, size=0.1, **crossed)
+    one = cause(found, CauseCode.DAMPING)
+    assert (one.finding, one.weight) == (Finding.PRESENT, 1.0)
+    assert named_in(found) == [CauseCode.DAMPING]  # and not the crossings, which explain what others leave
+    assert "takes 5 % of the force" in sentences.measured(one)
+    small = stall(damping=1e-5, size=0.1, **crossed)
+    assert cause(small, CauseCode.DAMPING).weight == pytest.approx(1e-5 * 0.1 / (4 * AT_64))
+    assert named_in(small) == [CauseCode.CROSSINGS]
+    shown = cause(stall(damping=0.05, undamped=AT_64), CauseCode.DAMPING)
+    assert (shown.finding, shown.weight) == (Finding.SHOWN, 1.0)
+    assert f"changes by {words.percent(-0.75, 1, '+')}" in sentences.measured(shown)
+    same = cause(stall(damping=0.05, undamped=4 * AT_64), CauseCode.DAMPING)
+    assert (same.finding, same.weight) == (Finding.EXCLUDED, 0.0)
+    assert CauseCode.DAMPING not in {c.code for c in stall(**crossed).causes}
+
+
 def test_crossings_are_named_where_the_excess_grows_with_them() -> None:
     found = stall(crossings=(2.0, 4.0, 8.0, 16.0), errors=(6.4e-3, 1.6e-3, 5e-4, 4 * AT_64), gaps=(0.2,) * 4)
     assert named_in(found) == [CauseCode.CROSSINGS, CauseCode.GAPS]

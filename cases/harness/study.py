@@ -82,6 +82,11 @@ class RunRecord:
         return False
 
     @property
+    def damping_outside(self) -> float:
+        """Fraction of the force that damping takes, though the problem has no such force: an error of its own."""
+        return 0.0
+
+    @property
     def digest(self) -> str:
         """Name of the Result: hash of the parameters and of all that computes the run, 16 hex digits."""
         return self.named()

@@ -129,7 +129,20 @@ def _measured(found: Finding, known: Mapping[Head, Series], results: Results, pe
         ended[0] if ended else None,
         order,
         plan.expectation.below if plan.expectation and plan.expectation.order is not None else BELOW,
+        plan.run.damping_outside,
+        max((result.scale.get(plan.quantity, 0.0) for _, result in done), default=0.0),
+        _undamped(series, known, results, cells),
     )
+
+
+def _undamped(series: Series, known: Mapping[Head, Series], results: Results, cells: Sequence[int]) -> float | None:
+    """Error of the finest of `cells` in the refinement that differs in nothing but that it is not damped."""
+    if not (series.first.damping_outside and cells):
+        return None
+    mine = without("damping", series.head)
+    twins = [s for key, s in known.items() if without("damping", key) == mine and not s.first.damping_outside]
+    found = [error(run, results, *STALLS) for twin in twins for run in twin.runs if run.cells == cells[-1]]
+    return found[0] if found else None
 
 
 def doublings(found: Finding) -> list[tuple[Level, Result]]:

@@ -42,6 +42,7 @@ class CauseCode(StrEnum):
     GAPS = "gaps"  # and overlaps between domains [gap, gap_first, cells_first]
     TIME_STEP = "time_step"  # [change]
     ROUND_OFF = "round_off"  # [times: the finest error over its floor]
+    DAMPING = "damping"  # that the problem does not have [alpha; change, without it]
 
 
 @dataclass(frozen=True)
@@ -60,7 +61,8 @@ class Measured:
 
     `gaps` in particle spacings, None for methods that know points only. `halved` is the finest error with half the time
     step, `other` another particle count and the errors of the finest levels with it. `ended`: the next finer run, if it
-    failed.
+    failed. `damping` is the fraction of the force that damping takes which the problem does not have, `size` that of
+    the exact quantity, and `undamped` the finest error without damping.
     """
 
     cells: tuple[int, ...]
@@ -75,6 +77,9 @@ class Measured:
     ended: Ended | None = None
     order: float = USUAL
     below: float = BELOW
+    damping: float = 0.0
+    size: float = 0.0
+    undamped: float | None = None
 
     @property
     def orders(self) -> list[float]:
@@ -141,7 +146,7 @@ def explain(m: Measured) -> Stall | None:
     if not stalls(m):
         end = Cause(CauseCode.FAILED_RUN, Finding.SHOWN, 1.0, ended=m.ended)
         return Stall(None, last, orders[-1] if orders else None, before, (end, *_crossings_alone(m)), m.ended)
-    others = [_particles(m), _gaps(m), _time_step(m), _floor(m)]
+    others = [_particles(m), _gaps(m), _time_step(m), _floor(m), *([_damping(m)] if m.damping else [])]
     causes = [_crossings(m, max(c.weight for c in others)), *others]
     rank = list(Finding)
     causes.sort(key=lambda c: (-(c.weight >= NAMED), rank.index(c.finding), -c.weight))
@@ -210,6 +215,17 @@ def _floor(m: Measured) -> Cause:
     above = m.errors[-1] / m.floor
     weight = min(1.0, CLEAR / above)
     return Cause(CauseCode.ROUND_OFF, _judged(weight), weight, {"times": above})
+
+
+def _damping(m: Measured) -> Cause:
+    """Damping that the problem does not have: it moves the body by its own fraction of the motion, or nearly so."""
+    numbers = {"alpha": m.damping}
+    if m.undamped is None:
+        weight = min(1.0, m.damping * m.size / m.errors[-1])
+        return Cause(CauseCode.DAMPING, Finding.PRESENT if weight >= PART else Finding.EXCLUDED, weight, numbers)
+    change = m.undamped / m.errors[-1] - 1
+    weight = _fraction(m, -change * m.errors[-1])
+    return Cause(CauseCode.DAMPING, _judged(weight), weight, numbers | {"change": change})
 
 
 def _crossings(m: Measured, explained: float) -> Cause:

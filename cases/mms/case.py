@@ -12,17 +12,20 @@ from mpm_verify.cases.judging.records import Expectation
 from mpm_verify.cases.mms.expectations import JUDGED_QUANTITY, expected
 from mpm_verify.cases.mms.run import AXES, NORMS, QUANTITIES, QUICK, SOLID, Result, Run
 from mpm_verify.cases.mms.stability import check_time_steps
+from mpm_verify.cases.mms.variants import axes, variant
 from mpm_verify.cases.solvers import column_map
 from mpm_verify.cases.solvers.command import PYTHON, program
 from mpm_verify.cases.solvers.naming import method_of, version_of
 from mpm_verify.mms.cells import fitting, ratio
 from mpm_verify.mms.discretisation import dimension
+from mpm_verify.mms.duration import lasting
 from mpm_verify.mms.energy import check_energy
 from mpm_verify.solver.layout import per_side
 from mpm_verify.solver.plugins import (
     LAYOUTS,
     MATERIALS,
     METHODS,
+    SMOOTHINGS,
     SOLUTIONS,
     TRANSFERS,
     create,
@@ -38,9 +41,12 @@ __all__ = ["AXES", "JUDGED", "NORMS", "QUANTITIES", "QUICK", "Result", "Run"]
 
 JUDGED = (JUDGED_QUANTITY,)
 REFUTES = tuple((quantity, "rms") for quantity in ("v", "F", "sigma"))
-OURS = ("transfer", "stress", "layout", "staggered", "offset")  # fields that a solver of somebody else does not take
+OURS = (  # fields that a solver of somebody else does not take
+    "transfer", "stress", "layout", "staggered", "offset", "damping", "manufacture", "smoothing"
+)  # fmt: skip
 ALONE = ("start", "columns", "precision")  # and fields that the reference solver does not take
 THEIRS = {"cells": (8, 16, 32, 64), "ppc": (4,)}  # values that nobody asks for of such a solver
+NAMED = ("periods", "damping", "manufacture", "smoothing", "time_step")  # axes that a title tells
 SCHEME = {"transfer": "flip", "stress": "usl", "layout": "uniform"}  # the one that expectations are registered for
 
 
@@ -49,11 +55,19 @@ def title(runs: Sequence[Run]) -> str:
     methods, solutions = (tuple(dict.fromkeys(getattr(run, key) for run in runs)) for key in ("method", "solution"))
     if any(run.solver for run in runs):
         programs = dict.fromkeys(program(run.solver) for run in runs)
-        return f"{' and '.join(programs)} against the manufactured solution {', '.join(map(label, solutions))}"
+        named = " and ".join(programs)
+        return f"{named} against the manufactured solution {', '.join(map(label, solutions))}{beside(runs)}"
     words = [label(method) if is_file(method) else method.upper() for method in methods]
     named = " and ".join(words) if len(words) < 4 else f"{len(words)} methods"
     several = "solutions" if len(solutions) > 1 else "solution"
-    return f"{named} against the manufactured {several} {', '.join(map(label, solutions))}"
+    return f"{named} against the manufactured {several} {', '.join(map(label, solutions))}{beside(runs)}"
+
+
+def beside(runs: Sequence[Run]) -> str:
+    """Values of the axes of the title that all runs have and that are not usual: `, damping 0.05`."""
+    found = {name: {getattr(run, name) for run in runs} for name in NAMED}
+    return "".join(f", {name.replace('_', ' ')} {values.pop()}" for name, values in found.items()
+                   if len(values) == 1 and values != {getattr(Run, name)})  # fmt: skip
 
 
 def canonical(values: dict[str, Any]) -> dict[str, Any]:
@@ -66,6 +80,8 @@ def canonical(values: dict[str, Any]) -> dict[str, Any]:
     values["material"] = canonical_name(MATERIALS, values.get("material") or create(SOLUTIONS, solution).material)
     values["transfer"] = canonical_name(TRANSFERS, values.get("transfer", Run.transfer))
     values["layout"] = canonical_name(LAYOUTS, values.get("layout", Run.layout))
+    smoothing = values.get("smoothing", Run.smoothing)
+    values["smoothing"] = smoothing if smoothing == "none" else canonical_name(SMOOTHINGS, smoothing)
     if values.get("columns"):
         values["columns"] = column_map.read(values["columns"])
     if values.get("solver"):
@@ -108,7 +124,13 @@ def check(runs: Sequence[Run]) -> None:
 
 
 def check_ours(runs: Sequence[Run]) -> None:
-    """Raise ValueError for three dimensions, which the reference solver does not have."""
+    """Raise ValueError for what the reference solver does not have: three dimensions, a smoothing of the material."""
+    inside = [run for run in runs if run.manufacture != "none"]
+    if inside and not any(run.damping for run in inside):
+        raise ValueError("manufacture = 'damping' has no damping to put into the problem; give --damping 0.05 too")
+    for smoothing, material in dict.fromkeys((run.smoothing, run.material) for run in runs):
+        if smoothing != "none":
+            create(SMOOTHINGS, smoothing).check(create(MATERIALS, material))
     for run in runs:
         own = is_file(run.solution) and dimension(create(SOLUTIONS, run.solution)) == 3  # told by its check
         if run.dim == 3 and not own:
@@ -121,11 +143,11 @@ def check_ours(runs: Sequence[Run]) -> None:
 
 def check_solutions(runs: Sequence[Run]) -> None:
     """Raise ValueError with one line for a solution, material or layout that no solver can run."""
-    cells: dict[tuple[str, str, str], set[int]] = {}
+    cells: dict[tuple[str, str, str, float], set[int]] = {}
     for run in runs:
-        cells.setdefault((run.solution, run.material, run.layout), set()).add(run.cells)
-    for (specification, model, layout), counts in cells.items():
-        solution, material = create(SOLUTIONS, specification), create(MATERIALS, model)
+        cells.setdefault((run.solution, run.material, run.layout, run.periods), set()).add(run.cells)
+    for (specification, model, layout, periods), counts in cells.items():
+        solution, material = lasting(create(SOLUTIONS, specification), periods), create(MATERIALS, model)
         for run in (run for run in runs if run.solution == specification):
             per_side(run.ppc, dimension(solution))
         check_energy(material)
@@ -134,7 +156,8 @@ def check_solutions(runs: Sequence[Run]) -> None:
             from mpm_verify.mms.check import check as check_solution  # derives the fields: some tenths of a second
 
             check_solution(solution, material, tuple(sorted(counts)))
-        mine = [run for run in runs if (run.solution, run.material) == (specification, model) and not run.force]
+        of = specification, model, periods
+        mine = [run for run in runs if (run.solution, run.material, run.periods) == of and not run.force]
         if mine:
             check_time_steps(mine, sorted({run.courant for run in mine}))
 
@@ -183,8 +206,10 @@ def expectation(run: Run, quantity: str, norm: str) -> Expectation | None:
         return declared(run.order, quantity, norm, " along dt ~ h2" * run.tied)
     if run.start or any(getattr(run, name) != usual for name, usual in SCHEME.items()):
         return None
-    usual = run.courant == Run.courant and run.time_step == Run.time_step and run.staggered
-    return expected(run.method, run.solution, run.material, run.ppc, quantity, norm, usual, bool(run.solver))
+    beside = axes(run)
+    usual = run.courant == Run.courant and run.time_step == Run.time_step and run.staggered and not beside
+    plain = expected(run.method, run.solution, run.material, run.ppc, quantity, norm, usual, bool(run.solver))
+    return variant(run, quantity, norm, plain) if beside else plain
 
 
 def declared(order: float, quantity: str, norm: str, path: str = "") -> Expectation | None:

@@ -4,7 +4,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import sqrt
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from mpm_verify.cases.mms.norms import Norms, compare, new_sums
 from mpm_verify.cases.mms.packing import Packing
 from mpm_verify.cases.mms.run import QUANTITIES, Result, Run
 from mpm_verify.mms.discretisation import grid_box, time_steps, width
+from mpm_verify.mms.duration import lasting
 from mpm_verify.mms.manufacture import Manufactured
 from mpm_verify.mms.square import Square
 from mpm_verify.solver.boundary import box, moving
@@ -27,12 +28,16 @@ from mpm_verify.solver.plugins import (
     LAYOUTS,
     MATERIALS,
     METHODS,
+    SMOOTHINGS,
     SOLUTIONS,
     TRANSFERS,
     create,
 )
 from mpm_verify.solver.state import Floats, Grid, Particles
 from mpm_verify.solver.step import Model, Scheme, advance, check_time_step
+
+if TYPE_CHECKING:
+    from mpm_verify.solver.damping import Damping
 
 PIECE = 4096  # particles
 OF_F = (2, 3, 6, 7)  # columns of the sums that are of F and sigma
@@ -74,20 +79,21 @@ class Comparison:
 def setup(run: Run) -> tuple[Model, Comparison, int]:
     """Model at t = 0, what compares it with the exact solution, and the number of steps.
 
-    dt = courant_number dx / C, shortened so that whole steps fill the duration. x, F and sigma start exact, v exact at
-    -dt/2; with update-stress-first F and sigma start at -dt: the first step takes them to where its forces need them.
+    dt = courant_number dx / C, shortened so that whole steps fill the duration, unless it is the one that the paper
+    prints. x, F and sigma start exact, v exact at -dt/2; with update-stress-first F and sigma start at -dt: the first
+    step takes them to where its forces need them.
     """
-    solution: Any = create(SOLUTIONS, run.solution)
+    solution: Any = lasting(create(SOLUTIONS, run.solution), run.periods)
     material: Any = create(MATERIALS, run.material)
     dx = width(solution) / run.cells
     lower, upper = grid_box(solution, dx)
     shift = -dx * np.array(run.offset) if moves_grid(solution) else np.zeros(2)
     grid = Grid(dx, lower + shift, upper + shift)
-    steps, dt = time_steps(solution, grid.dx, run.courant_number)
+    steps, dt = time_steps(solution, grid.dx, run.courant_number, whole=run.whole_steps)
     lag = 0.5 * dt if run.staggered else 0.0
     F_lag = dt if run.staggered and run.stress == "usf" else 0.0
 
-    exact, basis = manufactured(run.solution, run.material), create(METHODS, run.method)
+    exact, basis = manufactured(run.solution, run.material, run.damping_inside), create(METHODS, run.method)
     layout = laid_out(run, solution, exact)
     particles, X = basis.populate(layout, material.rho0, lambda X: exact.x(X, 0.0)), layout.X
     particles.x, particles.v = exact.x(X, 0.0), exact.v(X, -lag)
@@ -96,12 +102,26 @@ def setup(run: Run) -> tuple[Model, Comparison, int]:
     transfer, stress = create(TRANSFERS, run.transfer), run.stress
     scheme = Scheme(transfer, stress, run.staggered)
     walls = moving(grid, solution.walls) if solution.boundary == "moving" else box(grid, solution.boundary)
-    model = Model(grid, particles, basis, material, walls, dt, scheme)
+    model = Model(grid, particles, basis, material, walls, dt, scheme, damping_of(run), smoothing_of(run))
     transfer.start(model, lambda X: velocity_gradient(exact, X, -lag, 1e-3 * dt))
     every = max(1, steps // LOOKS)
     packing = Packing(exact, layout, dx, every) if run.layout != "uniform" or len(layout) <= COUNTED else None
     norms, gaps = Norms(len(particles), float(particles.V0.mean())), Gaps(layout, every)
     return model, Comparison(exact, norms, gaps, packing, new_sums(particles), lag, F_lag), steps
+
+
+def damping_of(run: Run) -> "Damping | None":
+    """Local damping of the solver, None where there is none: its kernel takes a second to compile."""
+    if not run.damping:
+        return None
+    from mpm_verify.solver.damping import Damping
+
+    return Damping(run.damping)
+
+
+def smoothing_of(run: Run) -> Any:
+    """Smoothing of the solver, None where there is none."""
+    return None if run.smoothing == "none" else create(SMOOTHINGS, run.smoothing)
 
 
 def laid_out(run: Run, solution: Any, exact: Manufactured) -> Layout:
@@ -160,7 +180,7 @@ def execute(run: Run, tick: Callable[[float], None] = lambda fraction: None) -> 
         crossings=model.crossings,
         gap=comparison.gaps.most,
         packed=comparison.packing.packed if comparison.packing else None,
-        audit=audited(run.solution, run.material),
+        audit=audited(run.solution, run.material, run.periods),
         peak_memory_mb=peak_memory(),
         scale=scale,
         floor={} if failure else round_off(scale, model),

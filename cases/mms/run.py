@@ -1,20 +1,33 @@
 """Run and Result of the MMS case, data for store, rule and reports."""
 
 from dataclasses import dataclass, field
-from math import inf, isqrt
+from math import inf, isqrt, sqrt
 from typing import Any, ClassVar, get_args
 
 from mpm_verify.cases.harness.study import ResultRecord, RunRecord, axis
 from mpm_verify.mms.blind_spots import BlindSpot
-from mpm_verify.solver.plugins import LAYOUTS, MATERIALS, METHODS, SOLUTIONS, TRANSFERS, available, label, load, split
+from mpm_verify.solver.plugins import (
+    LAYOUTS,
+    MATERIALS,
+    METHODS,
+    SMOOTHINGS,
+    SOLUTIONS,
+    TRANSFERS,
+    available,
+    create,
+    label,
+    load,
+    split,
+)
 from mpm_verify.solver.stress_update import Stress
 
 QUANTITIES = ("u", "v", "F", "sigma")
 NORMS = ("rms", "max", "final", "printed")
 STARTS = tuple(f"{v}.{F}.{b}" for v in ("half", "zero") for F in ("now", "before") for b in ("start", "end"))
 PRECISIONS = ("double", "single")
-PATHS = ("h", "h2")  # of dt as cells get finer
-BEGIN = 8  # cells at which both paths have the same C dt / dx
+PATHS = ("h", "h2", "printed")  # of dt as cells get finer
+BEGIN = 8  # cells at which the first two have the same C dt / dx
+INSIDE = ("none", "damping")  # what can be put into the problem
 AXES = {"cells": (8, 16, 32, 64, 128), "ppc": (1, 4, 9)}  # values that nobody asks for; of the rest the defaults
 QUICK: dict[str, tuple[Any, ...]] = {
     "solution": ("axis_aligned", "clamped_shear"), "cells": (8, 12, 16, 24, 32), "ppc": (4,)
@@ -65,8 +78,17 @@ class Run(RunRecord):
     start: str = axis("", "Time levels that it is given by force, see docs/own-solver.md; or all.", choices=STARTS)
     precision: str = axis("double", "Precision that it computes with: double, single.", choices=PRECISIONS)
     time_step: str = axis(
-        "h", "Path of dt as cells get finer: h, or h2, with C dt / dx that of --courant times 8 / cells.", choices=PATHS
+        "h",
+        "Path of dt as cells get finer: h; h2, with C dt / dx that of --courant times 8 / cells; or printed, as in the "
+        "paper, --courant times sqrt(dx / C) in units of the solution, which only --force runs.",
+        choices=PATHS,
     )
+    periods: float = axis(0.0, "Periods of the solution that a run lasts; 0: the duration that it states, mostly one.")
+    damping: float = axis(0.0, "Local damping, the fraction of the unbalanced force at each node: 0.05 for 5 %.")
+    manufacture: str = axis(
+        "none", "Put into the problem, so that the motion stays the exact one: none, damping.", choices=INSIDE
+    )
+    smoothing: str = axis("none", "none, or smoothing of the stress of the internal force.", SMOOTHINGS)
     time_limit: float = axis(600.0, "Seconds that a run of a solver of your own may take.", named=False)
     memory_limit: float = axis(0.0, "Address space that it may have, MB; 0: any.", named=False)
     case: ClassVar[str] = "mms"
@@ -89,6 +111,12 @@ class Run(RunRecord):
             raise ValueError(f"precision = {self.precision!r} must be one of {', '.join(PRECISIONS)}")
         if self.time_step not in PATHS:
             raise ValueError(f"time_step = {self.time_step!r} must be one of {', '.join(PATHS)}")
+        if not 0 <= self.periods <= 100:
+            raise ValueError(f"periods = {self.periods} cannot be run; choose 0.01 to 100, or leave it out")
+        if not 0 <= self.damping <= 0.9:
+            raise ValueError(f"damping = {self.damping} cannot be run; choose 0 to 0.9, 0.05 for 5 %")
+        if self.manufacture not in INSIDE:
+            raise ValueError(f"manufacture = {self.manufacture!r} must be one of {', '.join(INSIDE)}")
         if not (0 <= self.order <= 10 and self.time_limit > 0 and self.memory_limit >= 0):
             raise ValueError("order must be from 0 to 10, time_limit above 0, and memory_limit 0 or more")
 
@@ -106,7 +134,26 @@ class Run(RunRecord):
     @property
     def courant_number(self) -> float:
         """C dt / dx on these cells."""
-        return self.courant if self.time_step == "h" else self.courant * BEGIN / self.cells
+        if self.time_step == "printed":
+            solution = create(SOLUTIONS, self.solution)
+            dx = float(solution.upper[0] - solution.lower[0]) / self.cells
+            return float(self.courant * sqrt(solution.C / dx))
+        return self.courant * (BEGIN / self.cells if self.time_step == "h2" else 1.0)
+
+    @property
+    def whole_steps(self) -> bool:
+        """Whether dt stays as it is, though the steps do not fill the duration."""
+        return self.time_step == "printed"
+
+    @property
+    def damping_inside(self) -> float:
+        """Damping that the problem has too."""
+        return self.damping if self.manufacture == "damping" else 0.0
+
+    @property
+    def damping_outside(self) -> float:
+        """Damping that the problem does not have."""
+        return self.damping - self.damping_inside
 
     @property
     def tied(self) -> bool:
@@ -121,11 +168,11 @@ class Run(RunRecord):
     @property
     def cost(self) -> float:
         """Particle updates, up to a factor."""
-        return self.cells * self.particles / self.courant_number
+        return self.cells * self.particles / self.courant_number * (self.periods or 1.0)
 
     @property
     def updates(self) -> float:
-        """Particle updates of a square or cube over the usual duration."""
+        """Particle updates of a square or cube over the duration."""
         return 2.0 * self.cost
 
     @property

@@ -11,6 +11,7 @@ import numpy as np
 from mpm_verify.cases.mms.exact import manufactured
 from mpm_verify.cases.mms.run import Run
 from mpm_verify.mms.discretisation import dimension, time_steps, width
+from mpm_verify.mms.duration import lasting
 from mpm_verify.mms.manufacture import Manufactured
 from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS, create, is_file, label, parameters_of, split
 
@@ -23,13 +24,15 @@ LEAST_COURANT = 1e-3
 def check_time_steps(runs: Sequence[Run], courants: Sequence[float]) -> None:
     """Raise ValueError, with what to type, where a run takes a step above the stable one: dt > dx / (c + |v|).
 
-    The runs are of one solution in one material; `courants` are those that were asked for, the largest last. What
-    passes here also runs: |v| is the largest over the body in the half step before the start.
+    The runs are of one solution in one material over one duration; `courants` are those that were asked for, the
+    largest last. What passes here also runs: |v| is the largest over the body in the half step before the start.
     """
     specification, model = runs[0].solution, runs[0].material
-    solution, material = create(SOLUTIONS, specification), create(MATERIALS, model)
+    solution, material = lasting(create(SOLUTIONS, specification), runs[0].periods), create(MATERIALS, model)
     steps = {
-        (run.cells, run.courant_number): time_steps(solution, width(solution) / run.cells, run.courant_number)
+        (run.cells, run.courant_number): time_steps(
+            solution, width(solution) / run.cells, run.courant_number, whole=run.whole_steps
+        )
         for run in runs
     }
     longest = max(count for count, _ in steps.values())
@@ -41,6 +44,8 @@ def check_time_steps(runs: Sequence[Run], courants: Sequence[float]) -> None:
     lag = 0.5 * max(dt for _, dt in steps.values())
     c, v = float(material.wave_speed()), fastest(solution, manufactured(specification, model), lag)
     if any(dt * (c + v) > width(solution) / cells for (cells, _), (_, dt) in steps.items()):
+        if numbers := [run.courant_number for run in runs if run.whole_steps]:
+            raise ValueError(printed(specification, numbers, float(solution.C) / (c + v)))
         most = max(run.courant_number / run.courant for run in runs)  # not 1 where dt has a path of its own
         raise ValueError(refusal(specification, solution, c, v, courants, most))
 
@@ -83,6 +88,15 @@ def refusal(
         f"{label(specification)}: with waves at {c:.4g}, the body at {v:.3g} and a reference speed of {C:g}, a "
         f"Courant number of {courant:g} is above the stability limit of {largest:g}; the speed would have to be "
         f"{faster:g} or more; take {', or '.join(ways)}; --force runs it all the same"
+    )
+
+
+def printed(specification: str, numbers: Sequence[float], largest: float) -> str:
+    """Line on the time step that the paper prints: no Courant number is near to it."""
+    return (
+        f"{label(specification)}: the printed time step is a Courant number of {min(numbers):.3g} to "
+        f"{max(numbers):.3g}, above the stability limit of {rounded(largest, floor):g}; take --time-step h, or see it "
+        "fail with --force"
     )
 
 

@@ -69,6 +69,11 @@ class GeneralisedVortex(Annulus):
         """Time of half a period of the sine: out and back."""
         return 1 / self.rate
 
+    @property
+    def period(self) -> float:
+        """Time of a whole period: out to both sides."""
+        return 2 / self.rate
+
     def displacement(self, X: Sequence["sp.Symbol"], t: "sp.Symbol") -> "sp.Matrix":
         """Displacement u (2,) of the reference position X and the time t."""
         import sympy as sp

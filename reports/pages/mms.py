@@ -80,6 +80,7 @@ def _page(record: Record, folder: Path, field: tuple[int, int]) -> str:
         stalls=stalls(record),
         cost=_cost(record, folder),
         overview=overview,
+        slower=any((s.first.method, s.first.solution) == ("mpm", "axis_aligned") for s in record.series),
         graded=show_graded if graded.found(record) else None,
         looked=looked(record),
         quantities=QUANTITIES,

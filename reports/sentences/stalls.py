@@ -12,12 +12,14 @@ NAMES = {
     CauseCode.GAPS: "gaps and overlaps between domains",
     CauseCode.TIME_STEP: "the time step",
     CauseCode.ROUND_OFF: "round-off",
+    CauseCode.DAMPING: "damping that the problem does not have",
 }
 UNMEASURED = {
     CauseCode.QUADRATURE: "one particle count only; a list for --ppc adds others",
     CauseCode.GAPS: "this method knows points only",
     CauseCode.TIME_STEP: "no run with half of it; a list for --courant adds one",
     CauseCode.ROUND_OFF: "no round-off floor is known",
+    CauseCode.DAMPING: "the run has none",
 }
 
 
@@ -106,10 +108,18 @@ def _round_off(n: dict[str, float], peer: Peer | None) -> str:
     return f"the finest error is {n['times']:.1g} times its floor"
 
 
+def _damping(n: dict[str, float], peer: Peer | None) -> str:
+    told = f"it takes {words.percent(n['alpha'], 2 if n['alpha'] < 0.01 else 0)} of the force"
+    if "change" not in n:
+        return f"{told}; a list for --damping adds a run without it"
+    return f"{told}, and without it the finest error changes by {words.percent(n['change'], 1, '+')}"
+
+
 MEASURED = {
     CauseCode.CROSSINGS: _crossings,
     CauseCode.QUADRATURE: _quadrature,
     CauseCode.GAPS: _gaps,
     CauseCode.TIME_STEP: _time_step,
     CauseCode.ROUND_OFF: _round_off,
+    CauseCode.DAMPING: _damping,
 }

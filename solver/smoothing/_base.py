@@ -73,7 +73,14 @@ class Smoothing:
         return self.of == "both" and self.where == "cell" and self.into == "force"
 
     def check(self, material: Material) -> None:
-        """Raise ValueError for a material that cannot be smoothed."""
+        """Raise ValueError for a material that cannot be smoothed: of a function of F the stress of the force can."""
+        if material.rate is None and self.of == "stress" and self.into == "force":
+            return
+        if material.rate is None:
+            raise ValueError(
+                "smoothing must have a material in rate form: a function of F has no rate and no history, only the "
+                "stress of its force can be smoothed; take volumetric:of=stress, deviatoric:of=stress or full:of=stress"
+            )
         if material.rate not in RATES:
             raise ValueError(f"smoothing must have a material in rate form with a rate of {', '.join(RATES)}")
 
@@ -121,7 +128,7 @@ class Smoothing:
 
 
 def volumes(particles: Particles) -> Floats:
-    """Volumes V0 det F_old (P,) at the start of the step."""
-    F: Floats = particles.F_old
+    """Volumes V0 det F (P,) at the start of the step; a function of F keeps no F_old, and is not asked later."""
+    F: Floats = particles.F_old if particles.F_old.size else particles.F.reshape(-1, 4)
     V: Floats = particles.V0 * (F[:, 0] * F[:, 3] - F[:, 1] * F[:, 2])
     return V

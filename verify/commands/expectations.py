@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 NOTE = """
 Orders in rms with their bands, measured (see docs/methods.md); the source is that of u. With 4 or 9 particles per
 cell u is judged, the others are shown. `stalls`: the order falls below 1.8. `diverges`: the error grows, or runs
-fail.
+fail. What damping, smoothing and another duration do to an order stands there too.
 """
 
 

@@ -14,6 +14,7 @@ from mpm_verify.cases.mms.external.hints import hints
 from mpm_verify.cases.mms.run import Result, Run
 from mpm_verify.cases.solvers.asking import Answer, ask, positions
 from mpm_verify.mms.discretisation import dimension
+from mpm_verify.mms.duration import lasting
 from mpm_verify.mms.export.case import Exported, Names, export
 from mpm_verify.mms.export.slice import sliced
 from mpm_verify.mms.export.start import named
@@ -48,7 +49,7 @@ def answered(run: Run, case: Exported, tick: Callable[[float], None] = lambda fr
 @cache
 def exported(run: Run) -> Exported:
     """Content of the case folder."""
-    solution = sliced(create(SOLUTIONS, run.solution), run.dim, run.cells)
+    solution = sliced(lasting(create(SOLUTIONS, run.solution), run.periods), run.dim, run.cells)
     material = create(MATERIALS, run.material)
     names = Names(run.solution, run.material)
     return export(
@@ -95,7 +96,7 @@ def result_of(run: Run, case: Exported, found: Found, failure: Failure | None) -
         floor={} if failure else floor,
         failure=failure,
         crossings=None,
-        audit=audited(run.solution, run.material),
+        audit=audited(run.solution, run.material, run.periods),
         environment=environment(),
         parameters=parameters("solution", create(SOLUTIONS, run.solution))
         | parameters("material", create(MATERIALS, run.material)),

@@ -1,0 +1,40 @@
+"""Solution over a number of its periods, in place of the duration that it states."""
+
+from functools import cached_property
+from typing import Any
+
+
+def period(solution: Any) -> float:
+    """Period of a solution; its duration, unless it says otherwise."""
+    return float(getattr(solution, "period", solution.duration))
+
+
+def lasting(solution: Any, periods: float) -> Any:
+    """Make the same solution over a number of its periods.
+
+    Parameters
+    ----------
+    solution
+        A plug-in of mms/solutions, or a user's.
+    periods
+        Number of periods; 0 for the duration that the solution states.
+
+    Returns
+    -------
+    object
+        The solution itself, or one of a class below its own, with another `duration`. What it has found of itself, such
+        as its edges, it finds anew.
+    """
+    if not periods:
+        return solution
+    kind, duration = type(solution), periods * period(solution)
+    names = {"duration": property(lambda self: duration), "__module__": kind.__module__, "__doc__": kind.__doc__}
+    made: Any = object.__new__(type(kind.__name__, (kind,), names))
+    known = {name: value for name, value in vars(solution).items() if not _found(kind, name)}
+    vars(made).update(known)
+    return made
+
+
+def _found(kind: type, name: str) -> bool:
+    """Whether an attribute is one that the solution computes when it is asked for."""
+    return isinstance(getattr(kind, name, None), cached_property)
