@@ -85,7 +85,7 @@ def parts(asked: Asked) -> list[Asked]:
     """Request with all tests and one material of a solver of somebody else, where none are asked for."""
     if not any(asked.values.get("solver", ())):
         return [asked]
-    if "method" in asked.values:
+    if any(method != Run.method for method in asked.values.get("method", ())):
         raise ValueError("--method is one of the reference solver; leave it out beside --solver")
     return [replace(asked, values={"method": (Run.method,), **OTHERS, **asked.values}, quick=False)]
 
