@@ -59,16 +59,13 @@ class Faces:
     ----------
     particle
         Row in the initial layout, (S,).
-    ends
-        Numbers of the two corners in the domain, counter-clockwise, (S,2).
     corners
-        Their reference positions, (S,2,2).
+        Reference positions of both ends, counter-clockwise, (S,2,2).
     driven
         Whether the displacement is prescribed there, (S,); otherwise the traction is.
     """
 
     particle: Ints
-    ends: Ints
     corners: Floats
     driven: NDArray[np.bool_]
 
@@ -99,8 +96,8 @@ def faces(layout: Layout, lower: Floats, upper: Floats, kinds: Mapping[str, Kind
         particle, first = np.nonzero(there & there[:, after])
         found.append((particle, first, np.full(len(particle), kind == "prescribed")))
     particle, first, driven = (np.concatenate(parts) for parts in zip(*found, strict=True))
-    ends = np.stack([first, after[first]], axis=1)
-    return Faces(particle, ends, corners[particle[:, None], ends], driven)
+    ends = np.stack([corners[particle, first], corners[particle, after[first]]], axis=1)
+    return Faces(particle, ends, driven)
 
 
 @dataclass
@@ -121,6 +118,8 @@ class Surface:
         stands for (2S,), a length.
     x
         Positions, moved with the grid, (2S,2).
+    ends
+        Numbers of the corners of domains that the ends of each face are, (S,2); empty before they are asked for.
 
     References
     ----------
@@ -135,6 +134,7 @@ class Surface:
     N: Floats = field(init=False)
     area: Floats = field(init=False)
     x: Floats = field(init=False)
+    ends: Ints = field(init=False)
 
     def __post_init__(self) -> None:
         start, end = self.faces.corners[:, 0], self.faces.corners[:, 1]
@@ -144,6 +144,7 @@ class Surface:
         self.N = np.repeat(np.stack([along[:, 1], -along[:, 0]], axis=1) / length[:, None], 2, axis=0)
         self.area = np.repeat(length / 2, 2)
         self.x = self.given.position(self.X, 0.0)
+        self.ends = np.zeros((0, 2), np.int64)
 
     def act(self, model: Context) -> None:
         """Add the forces of the edge to those of the nodes. Raises RunFailed where it reaches out of the grid."""
@@ -172,7 +173,10 @@ class Surface:
         p, rows = model.particles, self.rows(model.particles)
         corners = model.basis.corners(p.x[rows], p.F[rows], p.domain[rows], model.grid.dx)
         assert corners is not None
-        x: Floats = corners[np.arange(len(rows))[:, None], self.faces.ends].reshape(-1, 2)
+        if not len(self.ends):
+            start = self.given.position(self.faces.corners.reshape(-1, 2), 0.0).reshape(-1, 2, 2)
+            self.ends = np.linalg.norm(corners[:, None] - start[:, :, None], axis=-1).argmin(axis=-1)
+        x: Floats = corners[np.arange(len(rows))[:, None], self.ends].reshape(-1, 2)
         weight = np.stack([1.0 - GAUSS, GAUSS])  # of a corner at a point
         return x, np.einsum("cg,sga->sca", weight, force.reshape(-1, 2, 2)).reshape(-1, 2)
 
