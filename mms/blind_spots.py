@@ -10,6 +10,8 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 
 Numbers = dict[str, float]
+SIDES = ("left", "right", "bottom", "top")
+OPEN = {"pulled": 1.0, "prescribed": 2.0, "found": 3.0}  # kinds of edges; the last: pulled, as it is nothing else
 FAINT = 0.01  # fraction below which a term is not seen beside the others
 WEAK = 0.05  # fraction of the force or the acceleration that matters most
 SMALL = 1e-3  # strain below which second order in the strain is not seen in the error of a usual grid
@@ -34,6 +36,7 @@ class BlindSpotCode(StrEnum):
     AMPLITUDE = "amplitude"  # strain and stress
     CROSSING = "crossing"  # displacement in cells
     WALLS = "walls"  # what the boundary does: held, sliding, free or prescribed
+    EDGES = "edges"  # edges that are pulled or prescribed, where there are some
     LOAD = "load"  # body force against inertia
     STRESS = "stress"  # divergence of the stress against body force and inertia
     PLANE = "plane"  # one-dimensional motion
@@ -112,8 +115,13 @@ def judge(measured: Numbers) -> tuple[BlindSpot, ...]:
     """One BlindSpot for each rule, in the order of the rules, and what holds for every solution last."""
     solid = "dimension" in measured  # only that of three dimensions is told
     known = {**measured, "finest": float(SOLID_FINEST if solid else FINEST)}
+    moves = tuple(side for side in SIDES if side in measured)  # pulled or prescribed
+    more = {BlindSpotCode.WALLS: moves}
     rules = (
-        BlindSpot(code, blind(known), {name: known[name] for name in (*names, *["dimension"] * solid)})
+        BlindSpot(
+            code, blind(known), {name: known[name] for name in (*names, *more.get(code, ()), *["dimension"] * solid)}
+        )
         for code, (blind, names) in RULES.items()
     )
-    return (*rules, *ALWAYS)
+    edges = BlindSpot(BlindSpotCode.EDGES, False, {side: measured[side] for side in moves})
+    return (*rules, *[edges] * bool(moves), *ALWAYS)

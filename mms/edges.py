@@ -15,11 +15,11 @@ from typing import Any
 
 import numpy as np
 
+from mpm_verify.mms.blind_spots import SIDES
 from mpm_verify.mms.manufacture import Manufactured
 from mpm_verify.mms.measure import CELLS, TIMES, Sampler, WaveMaterial, largest, least_stress
 from mpm_verify.solver.state import Floats
 
-SIDES = ("left", "right", "bottom", "top")  # side // 2 is the axis of the normal, side % 2 lower or upper
 POINTS = 65  # sampled on a side
 ROUND = 1e-9  # fraction of the largest displacement or stress: above round-off, below what could be meant
 ROUNDED = 5e-3  # fraction of the same: 3.14 for pi misses by less
@@ -58,7 +58,8 @@ class Side:
 class Edges:
     """Four sides of a body; `reach` is its largest displacement, `motion` the largest component of one.
 
-    `move` and `stress` are sizes below which a displacement and a traction are round-off.
+    `move` and `stress` are sizes below which a displacement and a traction are round-off. `uniform` says that F is the
+    same everywhere at a time.
     """
 
     sides: tuple[Side, ...]
@@ -66,6 +67,7 @@ class Edges:
     motion: float
     move: float
     stress: float
+    uniform: bool = False
 
     @property
     def kinds(self) -> tuple[str, ...]:
@@ -149,7 +151,9 @@ def examine(solution: Any, exact: Manufactured, material: WaveMaterial) -> Edges
         quantities = (s.u[..., axis], s.u[..., 1 - axis], s.P[..., axis, axis], s.P[..., 1 - axis, axis])
         sides.append(Side(name, *(peak(values, X, times) for values in quantities)))
     motion = max(largest(body.u), *(peak.value for side in sides for peak in (side.normal, side.tangential)))
-    return Edges(tuple(sides), reach, motion, ROUND * reach, ROUND * max(largest(body.P), least_stress(material)))
+    stress = ROUND * max(largest(body.P), least_stress(material))
+    uniform = largest(body.F - body.F[:, :1]) <= ROUND * largest(body.F - np.eye(2))
+    return Edges(tuple(sides), reach, motion, ROUND * reach, stress, uniform)
 
 
 def peak(values: Floats, X: Floats, times: Floats) -> Peak:

@@ -144,12 +144,14 @@ class Model(Context):
 def check_time_step(model: Model) -> None:
     """Check that dt is a stable step: at most dx / (c + |v|), the time a wave needs to cross a cell.
 
+    With edges that are driven it is a fraction of that, see solver/surface.py.
+
     Raises
     ------
     RunFailed
         UNSTABLE_STEP, with dt and its limit.
     """
     speed = model.material.wave_speed() + float(np.hypot(*model.particles.v.T).max())
-    limit = model.grid.dx / speed
+    limit = model.grid.dx / speed * (model.surface.step_fraction if model.surface else 1.0)
     if model.dt > limit:
         raise RunFailed(FailureKind.UNSTABLE_STEP, numbers={"dt": model.dt, "limit": limit})

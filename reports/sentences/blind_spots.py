@@ -5,9 +5,11 @@ from collections.abc import Callable
 from mpm_verify.mms.blind_spots import (
     CLEAR,
     FAINT,
+    OPEN,
     ROUND,
     SEEN_BY,
     SEEN_BY_SOLID,
+    SIDES,
     SMALL,
     BlindSpot,
     BlindSpotCode,
@@ -96,13 +98,35 @@ def no_walls(n: Numbers) -> str:
             f"The edges are free, and yet the fields have a traction of {percent(n['edge_traction'])} of the largest "
             "stress there: with this material the problem is not the one that is run, and no study of it converges."
         )
+    rest = "The rest of the boundary" if 0 < sum(side in n for side in SIDES) < len(SIDES) else "The boundary"
     if not (moves or pulls):
-        return "The boundary neither moves nor carries stress: no wall takes part."
+        return f"{rest} neither moves nor carries stress: no wall takes part."
     if not moves:
-        return "The boundary does not move: a wall along which particles slide takes no part."
+        return f"{rest} does not move: a wall along which particles slide takes no part."
     if not pulls:
-        return "The boundary moves free of stress: no wall takes part."
-    return "The boundary moves as it is prescribed: walls that hold still or let particles slide take no part."
+        return f"{rest} moves free of stress: no wall takes part."
+    return f"{rest} moves as it is prescribed: walls that hold still or let particles slide take no part."
+
+
+def moving_edges(n: Numbers) -> str:
+    """Sentence on edges that are pulled or driven, and on what else those can be that nobody has named."""
+    driven = [side for side, code in n.items() if code == OPEN["prescribed"]]
+    found = [side for side, code in n.items() if code == OPEN["found"]]
+    said = [
+        f"the {sides[-1] if len(sides) == 1 else ', '.join(sides[:-1]) + ' and ' + sides[-1]} "
+        f"edge{'s are' if len(sides) > 1 else ' is'} {how}"
+        for sides, how in (
+            ([side for side in n if side not in driven], "pulled by the exact traction"),
+            (driven, "driven by the exact displacement"),
+        )
+        if sides
+    ]
+    text = " and ".join(said)
+    hint = (
+        ": an edge that is no wall and not free is taken to be pulled; name it prescribed "
+        'in the "boundary" of domain() to have it driven'
+    )
+    return f"{text[0].upper()}{text[1:]}{hint * bool(found)}."
 
 
 def no_plane(n: Numbers) -> str:
@@ -207,6 +231,7 @@ SEEN: dict[BlindSpotCode, Words] = {
     BlindSpotCode.WALLS: lambda n: (
         "Particles slide along walls that they press on; walls that hold them and free edges take no part."
     ),
+    BlindSpotCode.EDGES: moving_edges,
     BlindSpotCode.LOAD: lambda n: (
         f"The body force reaches {figure(n['load'])} times the largest acceleration, so one that is dropped shows."
     ),
