@@ -192,7 +192,7 @@ def test_order_two_from_16_to_32_cells(write: Write, name: str, kind: str, metho
 
 
 def test_what_is_expected(write: Write) -> None:
-    """Order 2 of CPDI with edges of any kind; nothing where F is uniform and one is driven, nor of GIMP, which stalls."""
+    """Order 2 of CPDI with edges of any kind; nothing where F is uniform and one is driven, nor of GIMP: it stalls."""
     driven = ("fixed", "prescribed", "roller", "roller")
 
     def order(path: str, method: str) -> float | None:
