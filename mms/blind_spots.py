@@ -18,6 +18,7 @@ SMALL = 1e-3  # strain below which second order in the strain is not seen in the
 TURNED, CLEAR = 1.0, 15.0  # degrees: below the first nothing is seen, from the second on it is not weak
 ROUND = 1e-9  # fraction of the largest value: above round-off
 FINEST, SOLID_FINEST = 128, 16  # cells of the finest usual grid, and of that in three dimensions
+CONSISTENT = 1e-4  # strain up to which a model of small strains has the stress of its energy
 QUARTER = 0.25  # cells: of 4 particles in a cell, each is a quarter of a cell from its face
 
 
@@ -40,6 +41,7 @@ class BlindSpotCode(StrEnum):
     LOAD = "load"  # body force against inertia
     STRESS = "stress"  # divergence of the stress against body force and inertia
     PLANE = "plane"  # one-dimensional motion
+    MODEL = "model"  # strains too large for the constitutive model, where they are
     ORDERS = "orders"  # what an observed order does not show, of any solution
     CONSTANTS = "constants"  # what leaves the order as it is, of any solution
 
@@ -124,4 +126,6 @@ def judge(measured: Numbers) -> tuple[BlindSpot, ...]:
         for code, (blind, names) in RULES.items()
     )
     edges = BlindSpot(BlindSpotCode.EDGES, False, {side: measured[side] for side in moves})
-    return (*rules, *[edges] * bool(moves), *ALWAYS)
+    model = BlindSpot(BlindSpotCode.MODEL, True, {"strain": measured["strain"]})
+    strained = bool(measured.get("small_strain")) and measured["strain"] > CONSISTENT
+    return (*rules, *[edges] * bool(moves), *[model] * strained, *ALWAYS)

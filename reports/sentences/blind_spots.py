@@ -98,7 +98,10 @@ def no_walls(n: Numbers) -> str:
             f"The edges are free, and yet the fields have a traction of {percent(n['edge_traction'])} of the largest "
             "stress there: with this material the problem is not the one that is run, and no study of it converges."
         )
-    rest = "The rest of the boundary" if 0 < sum(side in n for side in SIDES) < len(SIDES) else "The boundary"
+    open_ = sum(side in n for side in SIDES)  # pulled or prescribed
+    if open_ == len(SIDES):
+        return "No wall holds the body: walls that hold still or let particles slide take no part."
+    rest = "The rest of the boundary" if open_ else "The boundary"
     if not (moves or pulls):
         return f"{rest} neither moves nor carries stress: no wall takes part."
     if not moves:
@@ -108,13 +111,20 @@ def no_walls(n: Numbers) -> str:
     return f"{rest} moves as it is prescribed: walls that hold still or let particles slide take no part."
 
 
+def listed(sides: list[str]) -> str:
+    """Phrase such as `the left and top edges are`."""
+    *first, last = sides
+    if not first:
+        return f"the {last} edge is"
+    return "all four edges are" if len(sides) == len(SIDES) else f"the {', '.join(first)} and {last} edges are"
+
+
 def moving_edges(n: Numbers) -> str:
     """Sentence on edges that are pulled or driven, and on what else those can be that nobody has named."""
     driven = [side for side, code in n.items() if code == OPEN["prescribed"]]
     found = [side for side, code in n.items() if code == OPEN["found"]]
     said = [
-        f"the {sides[-1] if len(sides) == 1 else ', '.join(sides[:-1]) + ' and ' + sides[-1]} "
-        f"edge{'s are' if len(sides) > 1 else ' is'} {how}"
+        f"{listed(sides)} {how}"
         for sides, how in (
             ([side for side in n if side not in driven], "pulled by the exact traction"),
             (driven, "driven by the exact displacement"),
@@ -193,6 +203,10 @@ BLIND: dict[BlindSpotCode, Words] = {
         "load alone moves the body, so wrong internal forces hardly show."
     ),
     BlindSpotCode.PLANE: no_plane,
+    BlindSpotCode.MODEL: lambda n: (
+        f"The constitutive model is one of small strains, and components of F {MINUS} I reach {figure(n['strain'])}: "
+        "its stress is that of its energy to first order alone, so the error ends on a floor that no cells remove."
+    ),
     BlindSpotCode.ORDERS: lambda n: (
         "Orders alone let defects pass; exact solutions, invariants and recorded magnitudes catch some that no order "
         "shows."
