@@ -1,5 +1,7 @@
 """Audit of a solution, as stored with the runs on it: what they cannot see, and what they can."""
 
+from collections.abc import Sequence
+
 from mpm_verify.mms.blind_spots import ALWAYS, BlindSpot, BlindSpotCode
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences import blind_spots as words
@@ -35,7 +37,7 @@ def unseen(record: Record) -> str:
     return " ".join(told.values())
 
 
-def edges(record: Record) -> str:
-    """Text on the edges of each solution that are pulled or driven; empty where there are none."""
-    spots = [spot for solution in record.solutions for spot in blind_spots(record, solution)]
+def edges(record: Record, solutions: Sequence[str]) -> str:
+    """Text on the edges of solutions that are pulled or driven; empty where there are none."""
+    spots = [spot for solution in solutions for spot in blind_spots(record, solution)]
     return " ".join(dict.fromkeys(words.sentence(spot) for spot in spots if spot.code is BlindSpotCode.EDGES))

@@ -58,7 +58,7 @@ def show(record: Record, page: Path | None, console: Console | None = None) -> N
     if spoilt := record.analysis.controls:
         loose = not all(one.refused for one in spoilt)
         out.print(f"\n{controls.sentence(spoilt)}", style=STYLES["INCONCLUSIVE"] if loose else "dim")
-    if moving := edges(record):
+    if moving := edges(record, record.solutions):
         out.print(f"\nEdges: {moving}", style="dim", markup=False)
     if blind := unseen(record):
         out.print(f"\nNot seen here: {blind}", style="dim", markup=False)
