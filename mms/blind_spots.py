@@ -10,12 +10,15 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 
 Numbers = dict[str, float]
+SIDES = ("left", "right", "bottom", "top")
+OPEN = {"pulled": 1.0, "prescribed": 2.0, "found": 3.0}  # kinds of edges; the last: pulled, as it is nothing else
 FAINT = 0.01  # fraction below which a term is not seen beside the others
 WEAK = 0.05  # fraction of the force or the acceleration that matters most
 SMALL = 1e-3  # strain below which second order in the strain is not seen in the error of a usual grid
 TURNED, CLEAR = 1.0, 15.0  # degrees: below the first nothing is seen, from the second on it is not weak
 ROUND = 1e-9  # fraction of the largest value: above round-off
 FINEST, SOLID_FINEST = 128, 16  # cells of the finest usual grid, and of that in three dimensions
+CONSISTENT = 1e-4  # strain up to which a model of small strains has the stress of its energy
 QUARTER = 0.25  # cells: of 4 particles in a cell, each is a quarter of a cell from its face
 
 
@@ -34,9 +37,11 @@ class BlindSpotCode(StrEnum):
     AMPLITUDE = "amplitude"  # strain and stress
     CROSSING = "crossing"  # displacement in cells
     WALLS = "walls"  # what the boundary does: held, sliding, free or prescribed
+    EDGES = "edges"  # edges that are pulled or prescribed, where there are some
     LOAD = "load"  # body force against inertia
     STRESS = "stress"  # divergence of the stress against body force and inertia
     PLANE = "plane"  # one-dimensional motion
+    MODEL = "model"  # strains too large for the constitutive model, where they are
     ORDERS = "orders"  # what an observed order does not show, of any solution
     CONSTANTS = "constants"  # what leaves the order as it is, of any solution
 
@@ -112,8 +117,15 @@ def judge(measured: Numbers) -> tuple[BlindSpot, ...]:
     """One BlindSpot for each rule, in the order of the rules, and what holds for every solution last."""
     solid = "dimension" in measured  # only that of three dimensions is told
     known = {**measured, "finest": float(SOLID_FINEST if solid else FINEST)}
+    moves = tuple(side for side in SIDES if side in measured)  # pulled or prescribed
+    more = {BlindSpotCode.WALLS: moves}
     rules = (
-        BlindSpot(code, blind(known), {name: known[name] for name in (*names, *["dimension"] * solid)})
+        BlindSpot(
+            code, blind(known), {name: known[name] for name in (*names, *more.get(code, ()), *["dimension"] * solid)}
+        )
         for code, (blind, names) in RULES.items()
     )
-    return (*rules, *ALWAYS)
+    edges = BlindSpot(BlindSpotCode.EDGES, False, {side: measured[side] for side in moves})
+    model = BlindSpot(BlindSpotCode.MODEL, True, {"strain": measured["strain"]})
+    strained = bool(measured.get("small_strain")) and measured["strain"] > CONSISTENT
+    return (*rules, *[edges] * bool(moves), *[model] * strained, *ALWAYS)

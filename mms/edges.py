@@ -1,8 +1,13 @@
 """Boundary that a solver can impose on the four sides of a rectangle, found from the manufactured fields.
 
-fixed    u = 0
-roller   u . n = 0, and no shear traction
-free     no traction, P N = 0
+fixed       u = 0
+roller      u . n = 0, and no shear traction
+free        no traction, P N = 0
+pulled      the exact traction P N
+prescribed  the exact displacement
+
+Any edge can be of the last two; one of none of the others is pulled, unless it misses one of them by so little that a
+constant may have been rounded.
 """
 
 from dataclasses import dataclass
@@ -10,14 +15,15 @@ from typing import Any
 
 import numpy as np
 
+from mpm_verify.mms.blind_spots import SIDES
 from mpm_verify.mms.manufacture import Manufactured
 from mpm_verify.mms.measure import CELLS, TIMES, Sampler, WaveMaterial, largest, least_stress
 from mpm_verify.solver.state import Floats
 
-SIDES = ("left", "right", "bottom", "top")  # side // 2 is the axis of the normal, side % 2 lower or upper
 POINTS = 65  # sampled on a side
 ROUND = 1e-9  # fraction of the largest displacement or stress: above round-off, below what could be meant
 ROUNDED = 5e-3  # fraction of the same: 3.14 for pi misses by less
+OPEN = ("pulled", "prescribed")  # kinds that any edge can be of
 NEEDS = {
     "fixed": ("normal displacement", "tangential displacement"),
     "roller": ("normal displacement", "tangential traction"),
@@ -52,7 +58,8 @@ class Side:
 class Edges:
     """Four sides of a body; `reach` is its largest displacement, `motion` the largest component of one.
 
-    `move` and `stress` are sizes below which a displacement and a traction are round-off.
+    `move` and `stress` are sizes below which a displacement and a traction are round-off. `uniform` says that F is the
+    same everywhere at a time.
     """
 
     sides: tuple[Side, ...]
@@ -60,11 +67,20 @@ class Edges:
     motion: float
     move: float
     stress: float
+    uniform: bool = False
 
     @property
     def kinds(self) -> tuple[str, ...]:
-        """First kind that holds, one a side; "" where it is nothing that the solver has."""
-        return tuple((*self.possible(side), "")[0] for side in self.sides)
+        """First kind that holds, one a side; "" where it may be meant to be another than `pulled`, see `rounded`."""
+        return tuple((*self.possible(side), "" if self.rounded(side) else OPEN[0])[0] for side in self.sides)
+
+    def rounded(self, side: Side) -> bool:
+        """Whether the side misses the kind that it is nearest to by what a rounded constant makes."""
+        return self.miss(side, self.nearest(side))[0] <= ROUNDED
+
+    def nearest(self, side: Side) -> str:
+        """Kind of a wall or a free edge that the side misses by the least."""
+        return min(NEEDS, key=lambda kind: self.miss(side, kind)[0])
 
     def misses(self, side: Side) -> dict[str, tuple[float, Peak]]:
         """Displacements and tractions of the side as fractions of the body's largest, with their peaks."""
@@ -93,31 +109,25 @@ class Edges:
     def wrong(self, kinds: tuple[str, ...]) -> str:
         """Line on the first side that cannot be of the kind it is meant to be; empty where all can."""
         for side, kind in zip(self.sides, kinds, strict=True):
-            if kind not in self.possible(side):
+            if kind not in (*self.possible(side), *OPEN):
                 return self.line(side, kind)
         return ""
 
     def line(self, side: Side, kind: str) -> str:
         """Line on how far the side is from the kind it is meant to be, or "" from any, and what to write."""
-        meant = kind or min(NEEDS, key=lambda kind: self.miss(side, kind)[0])
+        meant = kind or self.nearest(side)
         fraction, quantity = self.miss(side, meant)
         if fraction <= ROUNDED:
             return (
                 f"the {side.name} edge is not quite {meant}: its {self.told(side, quantity)}. That looks like a "
-                "rounded constant, such as 3.14 for pi: write sp.pi, sp.Rational(1, 3), sp.sqrt(2)"
+                "rounded constant, such as 3.14 for pi: write sp.pi, sp.Rational(1, 3), sp.sqrt(2); if it is meant so, "
+                'name the edge pulled or prescribed in "boundary"'
             )
-        if kind:
-            holds = self.possible(side)
-            instead = f'it is {holds[0]}: write that, or leave "boundary" out' if holds else "nor is it of another kind"
-            return f"the {side.name} edge cannot be {kind}: its {self.told(side, quantity)}; {instead}"
-        both = [
-            max((f"{part} {what}" for part in ("normal", "tangential")), key=lambda name: self.misses(side)[name][0])
-            for what in ("displacement", "traction")
-        ]
+        holds = self.possible(side)
+        instead = f"it is {holds[0]}" if holds else "it is pulled or prescribed"
         return (
-            f"the {side.name} edge is neither fixed nor roller nor free: its {self.told(side, both[0])}; its "
-            f"{self.told(side, both[1])}. An edge that moves and is pulled is not supported yet: let u or the traction "
-            "vanish there"
+            f"the {side.name} edge cannot be {kind}: its {self.told(side, quantity)}; {instead}: write that, or leave "
+            '"boundary" out'
         )
 
     def told(self, side: Side, quantity: str) -> str:
@@ -141,7 +151,9 @@ def examine(solution: Any, exact: Manufactured, material: WaveMaterial) -> Edges
         quantities = (s.u[..., axis], s.u[..., 1 - axis], s.P[..., axis, axis], s.P[..., 1 - axis, axis])
         sides.append(Side(name, *(peak(values, X, times) for values in quantities)))
     motion = max(largest(body.u), *(peak.value for side in sides for peak in (side.normal, side.tangential)))
-    return Edges(tuple(sides), reach, motion, ROUND * reach, ROUND * max(largest(body.P), least_stress(material)))
+    stress = ROUND * max(largest(body.P), least_stress(material))
+    uniform = largest(body.F - body.F[:, :1]) <= ROUND * largest(body.F - np.eye(2))
+    return Edges(tuple(sides), reach, motion, ROUND * reach, stress, uniform)
 
 
 def peak(values: Floats, X: Floats, times: Floats) -> Peak:

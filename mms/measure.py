@@ -4,6 +4,7 @@ Nothing is read from names. The symbols that the fields are written in are evalu
 their values, so no expression is put into another and all of it takes a tenth of a second.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import combinations, permutations, product
 from typing import Any, Protocol
@@ -11,6 +12,7 @@ from typing import Any, Protocol
 import numpy as np
 import sympy as sp
 
+from mpm_verify.mms.blind_spots import OPEN, SIDES
 from mpm_verify.mms.manufacture import Manufactured
 from mpm_verify.solver.layout import Layout, shared_corners
 from mpm_verify.solver.state import Floats
@@ -160,9 +162,19 @@ def measure(exact: Manufactured, solution: Any, material: WaveMaterial) -> dict[
         "weaker_direction": ratio(min(largest(shift[..., :, k]) for k in range(d)), largest(shift)),
         "mirror": mirror(s.u, sampler, solution, layout, times),
     }
-    free = float(solution.boundary == "free")
-    numbers |= {**at_the_edge(s, sampler, layout, times, least_stress(material)), "edge_free": free}
+    moves = open_sides(solution) if d == 2 else {}
+    numbers |= at_the_edge(s, sampler, layout, times, least_stress(material), moves)
+    numbers |= {"edge_free": float(solution.boundary == "free"), **moves}
+    if getattr(material, "small_strain", False):
+        numbers["small_strain"] = 1.0
     return numbers if d == 2 else {**numbers, "dimension": float(d)}
+
+
+def open_sides(solution: Any) -> dict[str, float]:
+    """Sides that are pulled or prescribed, as codes of OPEN; of one that nobody named so, the code of `found`."""
+    given, named = solution.boundary, getattr(solution, "named", tuple)() is not None
+    kinds = (given,) * len(SIDES) if isinstance(given, str) else given
+    return {side: OPEN[kind if named else "found"] for side, kind in zip(SIDES, kinds, strict=True) if kind in OPEN}
 
 
 def mirror(u: Floats, sampler: Sampler, solution: Any, layout: Layout, times: Floats) -> float:
@@ -185,9 +197,17 @@ def least_stress(material: WaveMaterial) -> float:
     return 1e-5 * material.rho0 * material.wave_speed() ** 2
 
 
-def at_the_edge(s: Sample, sampler: Sampler, layout: Layout, times: Floats, least: float) -> dict[str, float]:
-    """Displacement and traction on the boundary, as fractions of the largest displacement and stress in the body."""
+def at_the_edge(
+    s: Sample, sampler: Sampler, layout: Layout, times: Floats, least: float, moves: Mapping[str, float]
+) -> dict[str, float]:
+    """Displacement and traction on the boundary, as fractions of the largest displacement and stress in the body.
+
+    Beside sides that are pulled or prescribed, `moves`, those of the others alone; where there is no other, of all.
+    """
     X, normal = boundary(layout)
+    if 0 < len(moves) < len(SIDES):
+        side = 2 * np.abs(normal).argmax(axis=1) + (normal.sum(axis=1) > 0)
+        X, normal = (part[[SIDES[k] not in moves for k in side]] for part in (X, normal))
     edge, u, P = sampler(X, times), largest(s.u), max(largest(s.P), least)
     return {
         "edge_motion": ratio(largest(edge.u), u),

@@ -16,6 +16,7 @@ from mpm_verify.solver.transfers.flip import Flip
 if TYPE_CHECKING:  # their kernels take seconds to compile, and most runs have neither
     from mpm_verify.solver.damping import Damping
     from mpm_verify.solver.smoothing._base import Smoothing
+    from mpm_verify.solver.surface import Surface
 
 Load = Callable[[Particles, float], None]
 Deformation = Literal["linear", "exponential"]
@@ -99,6 +100,8 @@ class Model(Context):
         Damping of the force at the nodes, None for none.
     smoothing
         Smoothing of strain and stress, None for none.
+    surface
+        Edge of the body that is pulled or driven, None for none.
     steps
         Steps done; `time` is steps * dt, the time level of x, F and sigma. In a staggered run v has the level dt/2
         before it.
@@ -112,6 +115,7 @@ class Model(Context):
     scheme: Scheme = Scheme()
     damping: "Damping | None" = None
     smoothing: "Smoothing | None" = None
+    surface: "Surface | None" = None
     damped: float = 0.0  # energy that damping has taken so far
     hooks: dict[str, list[Callable[["Model"], None]]] = field(init=False)
 
@@ -140,12 +144,14 @@ class Model(Context):
 def check_time_step(model: Model) -> None:
     """Check that dt is a stable step: at most dx / (c + |v|), the time a wave needs to cross a cell.
 
+    With edges that are driven it is a fraction of that, see solver/surface.py.
+
     Raises
     ------
     RunFailed
         UNSTABLE_STEP, with dt and its limit.
     """
     speed = model.material.wave_speed() + float(np.hypot(*model.particles.v.T).max())
-    limit = model.grid.dx / speed
+    limit = model.grid.dx / speed * (model.surface.step_fraction if model.surface else 1.0)
     if model.dt > limit:
         raise RunFailed(FailureKind.UNSTABLE_STEP, numbers={"dt": model.dt, "limit": limit})

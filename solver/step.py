@@ -133,6 +133,8 @@ def equation_of_motion(model: Model) -> None:
     """Write velocities and accelerations at the nodes, and what the transfer makes of them."""
     g, w = model.grid, model.walls
     w.move(g, model.time, model.dt)
+    if model.surface:
+        model.surface.act(model)
     model.tell("before_forces")
     if model.damping:
         model.damped += model.damping.apply(g, w, model.dt, model.cutoff)
@@ -151,6 +153,8 @@ def equation_of_motion(model: Model) -> None:
     model.tell("after_motion")
     model.scheme.transfer.filter(model, g.velocity_acceleration)
     model.scheme.transfer.take(model)
+    if model.surface:
+        model.surface.move(model)
 
 
 def grid_to_particles(model: Model) -> None:

@@ -57,6 +57,9 @@ class Basis:
         ``deformed``, with the area J V0; empty of points, and of a basis that does not say.
     positive
         Whether shape values inside the grid are not negative.
+    faces_carry
+        Whether the field on a face of a domain is linear between its corners, so that forces on the edge of a body act
+        through those; otherwise they act through points, see solver/surface.py.
     gradients_jump
         Whether gradients of weights jump where a particle crosses a cell.
     has_limit
@@ -71,6 +74,7 @@ class Basis:
     domain_size: ClassVar[int] = 0
     domain_motion: ClassVar[str] = ""
     positive: ClassVar[bool] = True
+    faces_carry: ClassVar[bool] = False
     gradients_jump: ClassVar[bool] = False
     has_limit: ClassVar[bool] = False
     limit = inf

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from fixtures_edges import EDGES
 
 from mpm_verify.solver import boundary, context, damping, model, step
 from mpm_verify.solver._jit import BLOCK, kernel
@@ -701,6 +702,7 @@ DEFECTS = {
     "a third of dt": Defect(patched(Scheme, "half", lambda f: lambda self, dt: f(self, dt) / 1.5), ("deformation",)),
     "damping of nothing takes": Defect(patched(step, "equation_of_motion", breathes), ("undamped",)),
     "state that is not stored": Defect(hidden_state, ("restart",)),
+    **{name: Defect(plant, seen_by) for name, (plant, seen_by) in EDGES.items()},
 }
 
 

@@ -267,3 +267,15 @@ def test_bad_names(
     code, out, err = spoken(monkeypatch, capsys, *words)
     assert (code, out, err.count("\n")) == (2, "", 1)
     assert said in err
+
+
+@pytest.mark.parametrize(("A", "told"), [(0.05, True), (1e-6, False)])
+def test_strains_too_large_for_the_model_are_told(A: float, told: bool) -> None:
+    """Of linear elasticity, whose stress is that of its energy for small strains alone."""
+    solution: Any = create(SOLUTIONS, f"axis_aligned:A={A}")
+    material: Any = create(MATERIALS, "linear_elastic")
+    spots = audit(manufacture(solution, material, material.rho0), solution, material).spots
+    said = [sentence(spot) for spot in spots if spot.code is BlindSpotCode.MODEL]
+    assert [text.startswith("The constitutive model is one of small strains, and comp") for text in said] == [
+        True
+    ] * told

@@ -8,6 +8,7 @@ GROUPS = {
                "budget"),
     "walls": ("slide", "no_force_free", "no_force_roller", "no_force_fixed"),
     "step": ("step", "affine", "domain_motion"),
+    "edges": ("edge_sums", "edge_pulled", "edge_driven", "edge_affine"),
     "symmetry": ("mirror", "quarter_turn"),
     "stress": ("stress", "stress_turned", "rigid_turn", "turned_path", "increment", "constants",
                "wave_speed"),

@@ -21,7 +21,9 @@ from mpm_verify.mms.discretisation import grid_box, time_steps, width
 from mpm_verify.mms.duration import lasting
 from mpm_verify.mms.manufacture import Manufactured
 from mpm_verify.mms.square import Square
-from mpm_verify.solver.boundary import box, moving
+from mpm_verify.mms.surface import surface
+from mpm_verify.mms.surface import walls as sides
+from mpm_verify.solver.boundary import Walls, box, moving
 from mpm_verify.solver.failure import Failure, FailureKind, RunFailed
 from mpm_verify.solver.layout import CENTRED, Layout, parallelograms
 from mpm_verify.solver.plugins import (
@@ -101,8 +103,8 @@ def setup(run: Run) -> tuple[Model, Comparison, int]:
     particles.carried = exact.kernel.columns(X)
     transfer, stress = create(TRANSFERS, run.transfer), run.stress
     scheme = Scheme(transfer, stress, run.staggered)
-    walls = moving(grid, solution.walls) if solution.boundary == "moving" else box(grid, solution.boundary)
-    model = Model(grid, particles, basis, material, walls, dt, scheme, damping_of(run), smoothing_of(run))
+    held, edge = walls(solution, grid), surface(solution, exact, layout)
+    model = Model(grid, particles, basis, material, held, dt, scheme, damping_of(run), smoothing_of(run), edge)
     transfer.start(model, lambda X: velocity_gradient(exact, X, -lag, 1e-3 * dt))
     every = max(1, steps // LOOKS)
     packing = Packing(exact, layout, dx, every) if run.layout != "uniform" or len(layout) <= COUNTED else None
@@ -131,12 +133,18 @@ def laid_out(run: Run, solution: Any, exact: Manufactured) -> Layout:
     return layout
 
 
+def walls(solution: Any, grid: Grid) -> Walls:
+    """Walls of the solution; none beside an edge that is pulled or prescribed, see solver/surface.py."""
+    return moving(grid, solution.walls) if solution.boundary == "moving" else box(grid, sides(solution))
+
+
 def moves_grid(solution: Any) -> bool:
-    """Whether the offset moves the grid: no wall ties it to a free body.
+    """Whether the offset moves the grid: no wall ties it to a body whose edges all move.
 
     A square keeps its edges on faces of cells: in one that an edge cuts, particles of classical MPM are inverted.
     """
-    return solution.boundary == "free" and not isinstance(solution, Square)
+    open_ = solution.boundary != "moving" and set(sides(solution)) == {"free"}
+    return open_ and not isinstance(solution, Square)
 
 
 def velocity_gradient(exact: Manufactured, X: Floats, t: float, short: float) -> Floats:

@@ -13,7 +13,9 @@ from mpm_verify.cases.mms.run import Run
 from mpm_verify.mms.discretisation import dimension, time_steps, width
 from mpm_verify.mms.duration import lasting
 from mpm_verify.mms.manufacture import Manufactured
+from mpm_verify.mms.solutions._own import sides
 from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS, create, is_file, label, parameters_of, split
+from mpm_verify.solver.surface import DRIVEN_STEP
 
 CELLS, TIMES = 32, 9  # where and when the velocity at the start is looked at
 SLACK = 1e-3  # of that velocity: particles lie elsewhere
@@ -23,6 +25,8 @@ LEAST_COURANT = 1e-3
 
 def check_time_steps(runs: Sequence[Run], courants: Sequence[float]) -> None:
     """Raise ValueError, with what to type, where a run takes a step above the stable one: dt > dx / (c + |v|).
+
+    With driven edges the stable step is a fraction of that.
 
     The runs are of one solution in one material over one duration; `courants` are those that were asked for, the
     largest last. What passes here also runs: |v| is the largest over the body in the half step before the start.
@@ -43,11 +47,12 @@ def check_time_steps(runs: Sequence[Run], courants: Sequence[float]) -> None:
         )
     lag = 0.5 * max(dt for _, dt in steps.values())
     c, v = float(material.wave_speed()), fastest(solution, manufactured(specification, model), lag)
-    if any(dt * (c + v) > width(solution) / cells for (cells, _), (_, dt) in steps.items()):
+    part = DRIVEN_STEP if "prescribed" in sides(solution) else 1.0  # of the usual limit
+    if any(dt * (c + v) > part * width(solution) / cells for (cells, _), (_, dt) in steps.items()):
         if numbers := [run.courant_number for run in runs if run.whole_steps]:
-            raise ValueError(printed(specification, numbers, float(solution.C) / (c + v)))
+            raise ValueError(printed(specification, numbers, part * float(solution.C) / (c + v)))
         most = max(run.courant_number / run.courant for run in runs)  # not 1 where dt has a path of its own
-        raise ValueError(refusal(specification, solution, c, v, courants, most))
+        raise ValueError(refusal(specification, solution, c, v, courants, most, part))
 
 
 def fastest(solution: Any, exact: Manufactured, lag: float) -> float:
@@ -62,21 +67,27 @@ def fastest(solution: Any, exact: Manufactured, lag: float) -> float:
 
 
 def refusal(
-    specification: str, solution: Any, c: float, v: float, courants: Sequence[float], longest: float = 1.0
+    specification: str,
+    solution: Any,
+    c: float,
+    v: float,
+    courants: Sequence[float],
+    longest: float = 1.0,
+    part: float = 1.0,
 ) -> str:
     """Line with the largest Courant number at this speed and the least speed at this number, as they are typed.
 
-    `longest` is C dt / dx of the longest step over the Courant number.
+    `longest` is C dt / dx of the longest step over the Courant number, `part` the stable step over dx / (c + |v|).
     """
     C, courant = float(solution.C) / longest, courants[-1]
-    largest = rounded(C / (c + v), floor)
+    largest = rounded(part * C / (c + v), floor)
     ways = []
     if largest >= LEAST_COURANT:
         typed = [largest, *(other for other in reversed(courants[:-1]) if other < largest)]
         ways.append(f"--courant {','.join(f'{one:g}' for one in typed)}")
-    name, least = speed_parameter(solution), courant * (c + v)
-    if name and courant * v < C:  # the body moves faster with it, at most in proportion
-        least = max(least, courant * c / (1 - courant * v / C))
+    name, least = speed_parameter(solution), courant * (c + v) / part
+    if name and courant * v < part * C:  # the body moves faster with it, at most in proportion
+        least = max(least, courant * c / (part - courant * v / C))
     faster = rounded(least, ceil)
     if name:
         file, given = split(specification)

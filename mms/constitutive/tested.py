@@ -44,6 +44,7 @@ class Part(StrEnum):
     ENDS = "ends"
     ROWS = "rows"
     BUDGET = "budget"
+    EDGES = "edges"
 
 
 class Reason(StrEnum):
@@ -65,6 +66,7 @@ class Reason(StrEnum):
     OWN_AXES = "own_axes"  # the material tells its axes apart
     FILTER = "filter"  # a filter, applied twice, filters twice
     BUDGET = "budget"  # the energy budget is that of update-stress-last, and of positions that move with the nodes
+    POINTS = "points"  # forces on the edge act through points
     OTHER_RATE = "other_rate"  # smoothing does not take this rate
 
 

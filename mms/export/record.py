@@ -5,7 +5,7 @@ from typing import Any, Final, Literal
 
 FORMAT: Final = "mpm-verify-case-1"
 Precision = Literal["double", "single"]
-Edge = Literal["fixed", "roller", "free", "prescribed"]
+Edge = Literal["fixed", "roller", "free", "pulled", "prescribed"]
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class CaseRecord:
     lower, upper
         Corners of the body's box, lengths.
     grid_lower, grid_upper
-        Corners of the grid, which is wider beside free and prescribed edges; lengths.
+        Corners of the grid, which is wider beside free, pulled and prescribed edges; lengths.
     cells, dx
         Cells along the width of the box, and their side.
     ppc, particles

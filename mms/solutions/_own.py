@@ -4,8 +4,9 @@
     domain()             {"lower": (0, 0), "upper": (1, 1), "duration": 0.02, "speed": 100}: a rectangle, the time
                          that a study covers, and the reference speed C in dt = courant dx / C
 
-`domain` may also name a "material" (neo_hookean if not), a "boundary": fixed, roller, free, or four of them for left,
-right, bottom, top (without it the boundary is found, see mms/edges.py), and the "order" that is expected of u.
+`domain` may also name a "material" (neo_hookean if not), a "boundary": fixed, roller, free, pulled, prescribed, or four
+of them for left, right, bottom, top (without it the boundary is found, see mms/edges.py), and the "order" that is
+expected of u.
 Arguments with a number as default, in either function, are parameters, whatever their names: path/to/own.py:A=0.02.
 A file without these functions may hold a class instead, as those of the library. The file is executed as a program is:
 run none that you do not trust.
@@ -32,10 +33,11 @@ if TYPE_CHECKING:
 
 ARGUMENTS = {"displacement": ["X", "t"], "domain": []}
 NEEDED, OPTIONAL = {"lower", "upper", "duration", "speed"}, {"material", "boundary", "order"}
-KINDS = ("fixed", "roller", "free")
+KINDS = ("fixed", "roller", "free", "pulled", "prescribed")
+HELD = ("fixed", "roller")  # at a wall that does not move
 HUGE = 1e30  # a larger number of domain() overflows on the way
 NOT_NUMBERS = (str, bytes, bool, np.bool_, complex, np.complexfloating, np.ndarray)  # though float() takes some of them
-ROOM = 0.25  # fraction of the largest displacement by which a free edge may move further than the exact one
+ROOM = 0.25  # fraction of the largest displacement by which an edge may move further than the exact one
 
 
 def edges(solution: Any) -> Any:
@@ -146,7 +148,7 @@ class Own:
     def boundary(self) -> str | tuple[str, ...]:
         """Kind that all four sides have, otherwise those of left, right, bottom, top.
 
-        Raises ValueError where an edge does what no wall imposes.
+        Raises ValueError where an edge misses a wall by what a rounded constant makes.
         """
         if "" in self.sides:
             raise ValueError(f"{self.path}: {self.edges.wrong(self.sides)}")
@@ -160,11 +162,11 @@ class Own:
     @property
     def margin(self) -> Any:
         """Room beyond the rectangle, none where a wall stands: a number, or (2,2) for lower and upper corner."""
-        free = np.array([kind == "free" for kind in self.sides]).reshape(2, 2).T
-        if not free.any():
+        moves = np.array([kind not in HELD for kind in self.sides]).reshape(2, 2).T
+        if not moves.any():
             return 0.0
         room = (1 + ROOM) * self.edges.reach
-        return room if free.all() else room * free
+        return room if moves.all() else room * moves
 
     def layout(self, dx: float, ppc: int, offset: Offset = CENTRED) -> Layout:
         """Layout of square domains, `ppc` in a cell of side dx."""

@@ -1,6 +1,8 @@
 """Audit of a solution, as stored with the runs on it: what they cannot see, and what they can."""
 
-from mpm_verify.mms.blind_spots import ALWAYS, BlindSpot
+from collections.abc import Sequence
+
+from mpm_verify.mms.blind_spots import ALWAYS, BlindSpot, BlindSpotCode
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences import blind_spots as words
 
@@ -33,3 +35,9 @@ def unseen(record: Record) -> str:
     common = set.intersection(*codes) if codes else set()
     told = {spot.code: words.unseen(spot) for spots in audits for spot in spots if spot.code in common}
     return " ".join(told.values())
+
+
+def edges(record: Record, solutions: Sequence[str]) -> str:
+    """Text on the edges of solutions that are pulled or driven; empty where there are none."""
+    spots = [spot for solution in solutions for spot in blind_spots(record, solution)]
+    return " ".join(dict.fromkeys(words.sentence(spot) for spot in spots if spot.code is BlindSpotCode.EDGES))

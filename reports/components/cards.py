@@ -45,6 +45,7 @@ class Card:
     stall: str
     unseen: str
     seen: tuple[str, ...]
+    edges: str = ""
 
 
 def cards(record: Record) -> list[Card]:
@@ -93,6 +94,7 @@ def _card(record: Record, found: Finding) -> Card:
         short(found),
         audited.short(record, plan.run.solution),
         tuple(audited.seen(record, plan.run.solution)),
+        audited.edges(record, (plan.run.solution,)),
     )
 
 

@@ -5,9 +5,11 @@ from collections.abc import Callable
 from mpm_verify.mms.blind_spots import (
     CLEAR,
     FAINT,
+    OPEN,
     ROUND,
     SEEN_BY,
     SEEN_BY_SOLID,
+    SIDES,
     SMALL,
     BlindSpot,
     BlindSpotCode,
@@ -96,13 +98,45 @@ def no_walls(n: Numbers) -> str:
             f"The edges are free, and yet the fields have a traction of {percent(n['edge_traction'])} of the largest "
             "stress there: with this material the problem is not the one that is run, and no study of it converges."
         )
+    open_ = sum(side in n for side in SIDES)  # pulled or prescribed
+    if open_ == len(SIDES):
+        return "No wall holds the body: walls that hold still or let particles slide take no part."
+    rest = "The rest of the boundary" if open_ else "The boundary"
     if not (moves or pulls):
-        return "The boundary neither moves nor carries stress: no wall takes part."
+        return f"{rest} neither moves nor carries stress: no wall takes part."
     if not moves:
-        return "The boundary does not move: a wall along which particles slide takes no part."
+        return f"{rest} does not move: a wall along which particles slide takes no part."
     if not pulls:
-        return "The boundary moves free of stress: no wall takes part."
-    return "The boundary moves as it is prescribed: walls that hold still or let particles slide take no part."
+        return f"{rest} moves free of stress: no wall takes part."
+    return f"{rest} moves as it is prescribed: walls that hold still or let particles slide take no part."
+
+
+def listed(sides: list[str]) -> str:
+    """Phrase such as `the left and top edges are`."""
+    *first, last = sides
+    if not first:
+        return f"the {last} edge is"
+    return "all four edges are" if len(sides) == len(SIDES) else f"the {', '.join(first)} and {last} edges are"
+
+
+def moving_edges(n: Numbers) -> str:
+    """Sentence on edges that are pulled or driven, and on what else those can be that nobody has named."""
+    driven = [side for side, code in n.items() if code == OPEN["prescribed"]]
+    found = [side for side, code in n.items() if code == OPEN["found"]]
+    said = [
+        f"{listed(sides)} {how}"
+        for sides, how in (
+            ([side for side in n if side not in driven], "pulled by the exact traction"),
+            (driven, "driven by the exact displacement"),
+        )
+        if sides
+    ]
+    text = " and ".join(said)
+    hint = (
+        ": an edge that is no wall and not free is taken to be pulled; name it prescribed "
+        'in the "boundary" of domain() to have it driven'
+    )
+    return f"{text[0].upper()}{text[1:]}{hint * bool(found)}."
 
 
 def no_plane(n: Numbers) -> str:
@@ -169,6 +203,10 @@ BLIND: dict[BlindSpotCode, Words] = {
         "load alone moves the body, so wrong internal forces hardly show."
     ),
     BlindSpotCode.PLANE: no_plane,
+    BlindSpotCode.MODEL: lambda n: (
+        f"The constitutive model is one of small strains, and components of F {MINUS} I reach {figure(n['strain'])}: "
+        "its stress is that of its energy to first order alone, so the error ends on a floor that no cells remove."
+    ),
     BlindSpotCode.ORDERS: lambda n: (
         "Orders alone let defects pass; exact solutions, invariants and recorded magnitudes catch some that no order "
         "shows."
@@ -207,6 +245,7 @@ SEEN: dict[BlindSpotCode, Words] = {
     BlindSpotCode.WALLS: lambda n: (
         "Particles slide along walls that they press on; walls that hold them and free edges take no part."
     ),
+    BlindSpotCode.EDGES: moving_edges,
     BlindSpotCode.LOAD: lambda n: (
         f"The body force reaches {figure(n['load'])} times the largest acceleration, so one that is dropped shows."
     ),

@@ -15,6 +15,7 @@ HEADINGS = {
     "motion": "Rigid motion under uniform forces",
     "walls": "No force, and walls",
     "step": "One step from a strained state",
+    "edges": "Edges that are pulled or driven",
     "symmetry": "Mirror and quarter turn",
     "stress": "Constitutive model",
     "history": "Memory, strength and cut-off",
@@ -45,6 +46,10 @@ HELD = {
     "step": "a step of random v, F, σ and b beside walls, against full matrices of weights",
     "affine": "a step of a strained body in an affine velocity: x, v, F",
     "domain_motion": "corners of domains after that step",
+    "edge_sums": "sum and first moment of the forces of tractions that grow, by the theorem of Gauss",
+    "edge_pulled": "a stressed body that its tractions balance moves on as it is",
+    "edge_driven": "the same where two of its edges are driven",
+    "edge_affine": "a body whose F grows steadily, with APIC: x, v, F",
     "mirror": "a mirrored body gives the mirrored answer",
     "quarter_turn": "a body turned by 90° gives the turned answer",
     "stress": "σ, zz too, against the complex step of the energy, F without symmetry",
@@ -96,6 +101,7 @@ PARTS = {
     Part.BUDGET: "what moves, strains or damps the body without being counted, or solver/energy_budget.py",
     Part.ENDS: "what ends a run: solver/failure.py and who raises it",
     Part.ROWS: "rows of particles: reorder in solver/state.py, solver/slabs.py",
+    Part.EDGES: "edges that are pulled or driven: solver/surface.py",
     Part.TIME_STEP: "check_time_step in solver/model.py, or the wave speed of the constitutive model",
 }
 REASONS = {
@@ -115,6 +121,7 @@ REASONS = {
     Reason.OWN_AXES: "the material tells its own axes apart",
     Reason.FILTER: "through nodes and back is a filter, and no projector",
     Reason.BUDGET: "the budget is that of update-stress-last and of positions that move with the nodes",
+    Reason.POINTS: "forces on the edge act through points, which balance no stress exactly",
     Reason.OTHER_RATE: "smoothing does not take this rate",
 }
 

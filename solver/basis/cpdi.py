@@ -62,6 +62,7 @@ class Cpdi(Basis):
     fill = staticmethod(fill)
     domain_size: ClassVar[int] = 4
     domain_motion: ClassVar[str] = "deformed"
+    faces_carry: ClassVar[bool] = True
     has_limit: ClassVar[bool] = True
 
     def __post_init__(self) -> None:

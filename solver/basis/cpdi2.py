@@ -91,6 +91,7 @@ class Cpdi2(Basis):
     fill = staticmethod(fill)
     domain_size: ClassVar[int] = 8
     domain_motion: ClassVar[str] = "deformed"
+    faces_carry: ClassVar[bool] = True
 
     @classmethod
     def promises(cls, crossing: bool) -> Promise:

@@ -15,7 +15,7 @@ from mpm_verify.cases.harness.study import QuantityPlan
 from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.cases.judging.stall import Stall
 from mpm_verify.reports import words
-from mpm_verify.reports.components.audited import unseen
+from mpm_verify.reports.components.audited import edges, unseen
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences import commands, controls, own_solver, stalls, verdicts
 from mpm_verify.reports.sentences.headline import badge, headline
@@ -58,6 +58,8 @@ def show(record: Record, page: Path | None, console: Console | None = None) -> N
     if spoilt := record.analysis.controls:
         loose = not all(one.refused for one in spoilt)
         out.print(f"\n{controls.sentence(spoilt)}", style=STYLES["INCONCLUSIVE"] if loose else "dim")
+    if moving := edges(record, record.solutions):
+        out.print(f"\nEdges: {moving}", style="dim", markup=False)
     if blind := unseen(record):
         out.print(f"\nNot seen here: {blind}", style="dim", markup=False)
     for finding in found:
