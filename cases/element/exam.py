@@ -8,14 +8,16 @@ from typing import Any
 import numpy as np
 
 from mpm_verify.cases.element.drawn import drawn
-from mpm_verify.cases.element.paths import PathSource
+from mpm_verify.cases.element.motion import matrices
+from mpm_verify.cases.element.paths import ElementTest, PathSource, Stopped
 from mpm_verify.cases.element.run import ElementRun
 from mpm_verify.cases.element.study import FINE, ROUND_OFF, ElementStudy
 from mpm_verify.cases.harness.checks import Check, Examination, Remark
 from mpm_verify.cases.harness.study import Study
 from mpm_verify.solver.material.ubcsand import Ubcsand, out_of_range
-from mpm_verify.solver.plugins import split
+from mpm_verify.solver.plugins import label, split
 
+RESOLVED = 64  # parts of a leg in the length of a motion
 SETTLED = 50  # steps of the coarsest run from which on sound models have their order: 1.89 with 40, 1.91 with 50
 
 
@@ -43,7 +45,13 @@ class ElementRemark(StrEnum):
     CORRELATION = "element.correlation"
     OUR_READING = "element.our_reading"
     RATE_IDLE = "element.rate_idle"  # along a path of strains
+    RATE_ACTS = "element.rate_acts"  # along a motion: what turns, and how well steps resolve it
     PATH_READ = "element.path_read"  # columns of a file
+    PATH_END = "element.path_end"  # the stress there
+    PATH_STOPPED = "element.path_stopped"
+    PATH_STRESSES = "element.path_stresses"  # columns that control a stress
+    PATH_MOTION = "element.path_motion"  # strains that are read as simple shear
+    PLANE_YIELDS = "element.plane_yields"  # of a material that a strain of zz does not make yield
     PATH_ZERO = "element.path_zero"  # in every row, as in plane strain
     PATH_UNUSED = "element.path_unused"
     UNREAD = "element.unread"  # files of curves that cannot be read
@@ -65,10 +73,31 @@ def checks(material: Any, studied: ElementStudy) -> list[Check]:
     if studied.source:
         second = 1e-6 * (1600 / studied.steps[-1]) ** 2  # what order 2 makes of 1e-6 in 1600 steps
         allowed = max(second, ROUND_OFF) if material.order == 2 else ROUND_OFF
+        if studied.test.motion and rated(material):
+            allowed = max(ROUND_OFF, (turned(studied.test) / studied.steps[-1]) ** 2)
         found.append(Check(group, "error at the end, finest", finest, allowed, "at_most", studied.source))
+    smooth = (
+        studied.test.motion and material.name == "hypoelastic" and studied.source and max(studied.errors) > ROUND_OFF
+    )
+    if smooth and studied.steps[0] >= settled:
+        found.append(Check(group, "order in the step", studied.order, 1.9, "at_least", "midpoint rule of the rate"))
     if material.order == 2 and studied.steps[0] >= settled and not studied.test.cyclic and not len(studied.test.points):
         found.append(Check(group, "order in the strain step", studied.order, 1.9, "at_least", "midpoint scheme"))
     return found
+
+
+def rated(material: Any) -> bool:
+    """Whether an objective rate integrates the material, which makes motions of order 2."""
+    return material.respond is not None
+
+
+def turned(test: ElementTest) -> float:
+    """Length of a motion, the integral of the norm of its velocity gradient: what it turns and stretches in sum."""
+    line = np.linspace(0, test.legs, RESOLVED * test.legs + 1)
+    corners = np.arange(test.legs + 1)
+    F = matrices(np.column_stack([np.interp(line, corners, column) for column in test.points.T]))
+    steps = np.diff(F, axis=0) @ np.linalg.inv((F[1:] + F[:-1]) / 2)
+    return float(np.linalg.norm(steps, axis=(1, 2)).sum())
 
 
 def examination(
@@ -83,7 +112,13 @@ def examination(
 ) -> Examination:
     """Examination of the tests of one material, with what is known of it; `unread`: files that cannot be read."""
     found = [*(check for one in studies for check in checks(material, one)), *known]
-    remarks = [*lead(material, studies, found), *rate_idle(run.material), *read(reads)]
+    still = not any(one.test.motion for one in studies)
+    remarks = [
+        *lead(material, studies, found),
+        *(rate_idle(run.material) if still else []),
+        *read(reads),
+        *ends(studies),
+    ]
     remarks += [remark for one in studies for remark in notes(material, one)]
     if unread:
         remarks.append(Remark(ElementRemark.UNREAD, {"files": ", ".join(unread)}))
@@ -105,12 +140,36 @@ def read(sources: Sequence[PathSource]) -> list[Remark]:
     found = []
     for one in sources:
         used, zero, unused = (", ".join(names) for names in (one.used, one.zero, one.unused))
-        found.append(Remark(ElementRemark.PATH_READ, {"file": one.name, "used": used, "largest": one.largest}))
+        found.append(Remark(ElementRemark.PATH_READ, {"file": one.name, "used": used, "largest": one.largest,
+                                                      "motion": one.motion}))  # fmt: skip
+        if one.stresses:
+            found.append(Remark(ElementRemark.PATH_STRESSES, {"columns": ", ".join(one.stresses)}))
+        if one.motion == "simple_shear":
+            found.append(Remark(ElementRemark.PATH_MOTION, {"file": one.name}))
         if zero:
             found.append(Remark(ElementRemark.PATH_ZERO, {"columns": zero}))
         if unused:
             found.append(Remark(ElementRemark.PATH_UNUSED, {"file": one.name, "columns": unused}))
     return found
+
+
+def ends(studies: Sequence[ElementStudy]) -> list[Remark]:
+    """Remarks on the stress at the end of each path from a file and motion, or on where it stops."""
+    found = []
+    for one in studies:
+        if one.test.source and one.failed:
+            found.append(Remark(ElementRemark.PATH_STOPPED, {"path": one.test.title, **stopped_at(one.failed)}))
+        elif one.curve and (one.test.source or one.test.motion):
+            sx, sy, sz, xy = (float(one.curve[name][-1]) for name in ("sx", "sy", "sz", "tau"))
+            found.append(Remark(ElementRemark.PATH_END, {"path": one.test.title, "xx": -sx, "yy": -sy, "zz": -sz,
+                                                         "xy": xy}))  # fmt: skip
+    return found
+
+
+def stopped_at(stopped: Stopped) -> dict[str, float | str]:
+    """Cause of an early end, what is left, and where."""
+    where = {"left": stopped.left, "step": stopped.step, "steps": stopped.steps, "line": stopped.line}
+    return {"cause": stopped.cause, **where}
 
 
 def lead(material: Any, studies: Sequence[ElementStudy], found: Sequence[Check]) -> list[Remark]:
@@ -134,8 +193,7 @@ def notes(material: Any, one: ElementStudy) -> list[Remark]:
     group, stopped = one.test.title, one.failed
     found = []
     if stopped:
-        where = {"left": stopped.left, "step": stopped.step, "steps": stopped.steps}
-        found.append(Remark(ElementRemark.FAILED, {"cause": stopped.cause, **where}, group))
+        found.append(Remark(ElementRemark.FAILED, stopped_at(stopped), group))
     if one.source:
         found.append(Remark(ElementRemark.AGAINST, {"source": one.source}, group))
     else:
@@ -146,6 +204,10 @@ def notes(material: Any, one: ElementStudy) -> list[Remark]:
         found.append(Remark(ElementRemark.NO_ORDER, {}, group))
     else:
         found.append(Remark(ElementRemark.ORDER, {"order": one.order}, group))
+    if one.test.motion and material.rate is not None:
+        found.append(Remark(ElementRemark.RATE_ACTS, {"rate": label(material.rate), "steps": one.steps[-1]}, group))
+    if one.test.axial and material.out_of_plane == "plane":
+        found.append(Remark(ElementRemark.PLANE_YIELDS, {}, group))
     outside = beyond(material, one)
     if outside is not None:
         code = ElementRemark.ZZ_OUTSIDE if outside else ElementRemark.ZZ_WITHIN
@@ -155,7 +217,7 @@ def notes(material: Any, one: ElementStudy) -> list[Remark]:
 
 def beyond(material: Any, one: ElementStudy) -> float | None:
     """Fraction of the finest run's steps in which zz leaves the plane's range; None of a material that sees zz."""
-    if material.name not in PLANE_ALONE or len(one.curve.get("s", ())) < 2:
+    if material.name not in PLANE_ALONE or one.test.axial or len(one.curve.get("s", ())) < 2:
         return None
     sigma = np.column_stack([-one.curve["sx"], -one.curve["sy"], -one.curve["sz"], one.curve["tau"]])
     return float(np.mean(PLANE_ALONE[material.name](sigma[1:])))

@@ -20,7 +20,7 @@ With phi = 0 it is von Mises' material: sqrt(J2) <= c (plane_strain: t <= c wher
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import radians, sin, sqrt
-from typing import ClassVar
+from typing import ClassVar, Literal
 
 import numpy as np
 
@@ -129,6 +129,7 @@ class DruckerPrager(RateMaterial, Elastic):
     memory: ClassVar[tuple[str, ...]] = ("gamma_p", "eps_v_p", "void")
     sums: ClassVar[tuple[str, ...]] = ("gamma_p", "eps_v_p")
     order: ClassVar[float | None] = 1.0
+    out_of_plane: ClassVar[Literal["", "trial", "plane"]] = "trial"
     respond = staticmethod(respond)
 
     def __post_init__(self) -> None:

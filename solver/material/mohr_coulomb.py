@@ -17,7 +17,7 @@ cut-off is at sigma_t itself, however high.
 
 from dataclasses import dataclass
 from math import cos, inf, radians, sin, sqrt, tan
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
@@ -143,6 +143,7 @@ class MohrCoulomb(RateMaterial, Elastic):
     sums: ClassVar[tuple[str, ...]] = ("gamma_p", "eps_v_p")
     order: ClassVar[float | None] = 1.0
     yields_in_plane: ClassVar[bool] = True
+    out_of_plane: ClassVar[Literal["", "trial", "plane"]] = "trial"
     respond = staticmethod(respond)
 
     def __post_init__(self) -> None:
