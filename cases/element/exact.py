@@ -113,6 +113,14 @@ def sand(material: Ubcsand, test: ElementTest, begun: State) -> tuple[Columns, s
     if test.name == "biaxial":
         eta = np.linspace(0, reached(material, stress, test.length), POINTS)
         gamma, ev = np.array([ubc.biaxial(material, stress, float(e)) for e in eta]).T
+        if left := max(test.length - float(ev[-1] + gamma[-1]) / 2, 0.0):  # beyond failure: a constant flow
+            flow = material.eta_cv - material.eta_f
+            slip = 2 * left / (1 + flow)
+            eta, gamma, ev = (
+                np.append(eta, eta[-1]),
+                np.append(gamma, gamma[-1] + slip),
+                np.append(ev, ev[-1] + flow * slip),
+            )
         strains = {"gamma": gamma, "ev": ev, "ey": (ev + gamma) / 2}
         return ratios(stress / (1 - eta), eta) | strains, "quadrature"
     return None
