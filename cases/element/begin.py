@@ -22,14 +22,17 @@ def begin(material: Any, test: ElementTest, stress: float, how: str = "isotropic
     `isotropic`: all stresses are `stress`, compression positive (of a loose test a fraction of it); `none`: no stress;
     `k0`: the vertical stress is `stress` and the lateral ones 1 - sin phi of it (Jaky 1944); `oedometric`: the same
     vertical stress, and all that oedometric loading by the material itself leaves, memory included. Stresses that the
-    first row of a file gives replace those. Raises ValueError for k0 without friction, and for an oedometric stress
-    that is not reached.
+    first row of a file gives replace those.
+
+    Raises ValueError for k0 without friction, for none without cohesion where a stress is held, and for an oedometric
+    stress that is not reached.
     """
     element = element_of(material, test)
     sigma = start(material, test, stress)
     if material.energy is not None:
         return element.start(sigma)
     if how == "none":
+        check_bare(material, test)
         sigma = np.zeros(4)
     elif how == "k0":
         sigma = at_rest(material, stress)
@@ -42,6 +45,15 @@ def begin(material: Any, test: ElementTest, stress: float, how: str = "isotropic
         first = np.append(test.targets[0][:4], [nan] * (4 - min(4, test.size)))[[0, 1, 3, 2]]
         sigma = np.where(np.isfinite(first), first, sigma)
     return element.start(sigma)
+
+
+def check_bare(material: Any, test: ElementTest) -> None:
+    """Raise ValueError for a test that holds no stress of a soil without cohesion: there it has no strength."""
+    holds = any(condition.of == "stress" for condition in test.conditions)
+    if holds and material.friction_angle is not None and not material.cohesion:
+        raise ValueError(
+            f"start = none: {test.name} of a soil without cohesion has no strength; give it c, or a stress"
+        )
 
 
 def at_rest(material: Any, stress: float) -> Floats:

@@ -20,6 +20,7 @@ from mpm_verify.solver.state import Floats, Particles
 
 TOLERANCE, ENOUGH = 1e-13, 1e-12  # of the residuals' scales: where Newton ends, and what round-off may leave
 ATTEMPTS, NUDGE = 60, 1e-7
+CORNER, ALIKE = 1e-10, 1e-7  # on an edge: what round-off may leave, and a stiffness that is none, as a fraction
 PLANE, SPACE, MOTION = 3, 4, 5  # components of strain in the plane, with zz, and of the F of a motion
 
 
@@ -87,8 +88,11 @@ class Element:
             rows, memories = p.sigma, np.zeros((count, 0))
         return [State(*parts) for parts in zip(strains, rows, memories, strict=True)]
 
-    def solve(self, state: State, control: Control, guess: Floats, scale: Floats, enough: float = ENOUGH) -> State:
+    def solve(self, state: State, control: Control, guess: Floats, scale: Floats, corner: bool = False) -> State:
         """State after one step under a control; `scale` is the size of its residuals. Raises ElementFailed.
+
+        With `corner` stresses may lie on an edge of a yield surface: strains that they do not tell apart stay as in the
+        guess, and round-off may leave CORNER.
 
         Newton with a tangent by differences, and half the step where that does not bring the residual down: a corner
         of a yield surface has a tangent on either side. It ends at round-off: where no shorter step is better.
@@ -105,12 +109,14 @@ class Element:
             if best < TOLERANCE:
                 return ends[0]
             # Least squares: perfect plasticity may leave a tangent without an inverse on the way.
-            newton = np.linalg.lstsq((residuals[1:] - residuals[0]).T / nudge, -residuals[0], rcond=1e-13)[0]
+            newton = np.linalg.lstsq(
+                (residuals[1:] - residuals[0]).T / nudge, -residuals[0], rcond=ALIKE if corner else 1e-13
+            )[0]
             better = self._shorten(state, control, x, newton, scale, best)
             if better is None:
                 break
             x = better
-        if best < enough:
+        if best < (CORNER if corner else ENOUGH):
             return self.step(state, x[None])[0]
         raise ElementFailed(ElementFailure.NO_STRAIN, best)
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from mpm_verify.cases.element.drawn import drawn
+from mpm_verify.cases.element.known_ends import ends
 from mpm_verify.cases.element.motion import matrices
 from mpm_verify.cases.element.paths import ElementTest, PathSource, Stopped
 from mpm_verify.cases.element.run import ElementRun
@@ -76,6 +77,7 @@ def checks(material: Any, studied: ElementStudy) -> list[Check]:
         if studied.test.motion and rated(material):
             allowed = max(ROUND_OFF, (turned(studied.test) / studied.steps[-1]) ** 2)
         found.append(Check(group, "error at the end, finest", finest, allowed, "at_most", studied.source))
+    found += ends(material, studied)
     smooth = (
         studied.test.motion and material.name == "hypoelastic" and studied.source and max(studied.errors) > ROUND_OFF
     )
@@ -127,7 +129,7 @@ def examination(
         *lead(material, studies, found),
         *(rate_idle(run.material) if still else []),
         *read(reads),
-        *ends(studies),
+        *path_ends(studies),
     ]
     remarks += [remark for one in studies for remark in notes(material, one)]
     if unread:
@@ -163,7 +165,7 @@ def read(sources: Sequence[PathSource]) -> list[Remark]:
     return found
 
 
-def ends(studies: Sequence[ElementStudy]) -> list[Remark]:
+def path_ends(studies: Sequence[ElementStudy]) -> list[Remark]:
     """Remarks on the stress at the end of each path from a file and motion, or on where it stops."""
     found = []
     for one in studies:

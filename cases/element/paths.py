@@ -194,7 +194,8 @@ def follow(element: Element, test: ElementTest, steps: int, start: Floats | Stat
             if test.mixed:
                 end = next_of_leg(element, test, states, number, per, size)
             elif free:
-                end = solved(element, test, last, move, before, size)
+                kept = states[0] if test.axial else last  # so that what is left of a cell pressure does not add up
+                end = solved(element, test, kept, last, move, before, size)
                 before = end.strain - last.strain
             else:
                 end = finite(element.step(last, move[None])[0])
@@ -225,13 +226,18 @@ def next_of_leg(element: Element, test: ElementTest, states: list[State], number
     return finite(reached(element, last, wanted, before, size))
 
 
-def solved(element: Element, test: ElementTest, last: State, move: Floats, before: Floats, size: float) -> State:
-    """Solve for the next state: from the last increment, or from what is given alone. Raises ElementFailed."""
-    residuals, sizes = control(test, last, move), scales(test, move, size)
+def solved(
+    element: Element, test: ElementTest, kept: State, last: State, move: Floats, before: Floats, size: float
+) -> State:
+    """Solve for the next state, with the stresses of `kept`: from the last increment, or from what is given alone.
+
+    Raises ElementFailed.
+    """
+    residuals, sizes = control(test, kept, move), scales(test, move, size)
     if before @ move > 0:
         with suppress(ElementFailed):
-            return element.solve(last, residuals, before, sizes)
-    return element.solve(last, residuals, move, sizes)
+            return element.solve(last, residuals, before, sizes, test.axial)
+    return element.solve(last, residuals, move, sizes, test.axial)
 
 
 def scale_of(element: Element, state: State) -> float:

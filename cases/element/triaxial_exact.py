@@ -59,7 +59,7 @@ MERIDIANS: dict[str, Callable[[Any, int], Meridian]] = {  # by the name of the m
 def triaxial(soil: Any, test: ElementTest, begin: State) -> tuple[Columns, str] | None:
     """Exact columns and what they are; None from stresses that are not axial, or where a cut-off is met."""
     sx, sy, sz = -begin.sigma[:3]
-    if begin.sigma[3] or abs(sx - sz) > 1e-12 * abs(sy):
+    if begin.sigma[3] or abs(sx - sz) > 1e-9 * abs(sy):
         return None
     side = -1 if test.name == "triaxial_extension" else 1
     line = MERIDIANS[soil.name](soil, side)
@@ -68,7 +68,7 @@ def triaxial(soil: Any, test: ElementTest, begin: State) -> tuple[Columns, str] 
     else:
         found = drained(soil, line, side, test.length, float(sx), float(sy))
     lowest = min(float(found["sx"].min()), float(found["sy"].min()))
-    if lowest <= -min(getattr(soil, "sigma_t", np.inf), apex_of(soil.phi, soil.c)) and lowest < 1e-9 * abs(sy):
+    if lowest <= -min(getattr(soil, "sigma_t", np.inf), apex_of(soil.phi, soil.c)):
         return None
     return found, "closed form"
 
