@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from math import radians, sin
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,7 @@ from mpm_verify.cases.element.study import study
 from mpm_verify.cases.element.triaxial_exact import MERIDIANS
 from mpm_verify.cases.harness.build import Asked, build
 from mpm_verify.cases.judging.records import Outcome
+from mpm_verify.solver.material import hypoelastic
 from mpm_verify.solver.material.hypoelastic import Hypoelastic
 from mpm_verify.solver.material.mohr_coulomb import MohrCoulomb
 from mpm_verify.solver.material.ubcsand import Ubcsand
@@ -216,6 +218,25 @@ def test_who_is_asked_without_being_told() -> None:
     assert not any(name.startswith("triaxial") for name in asked[1])
     assert not takes(of("neo_hookean"))
     assert not takes(of("ubcsand:void=1"))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ('= "trial"', '= "space"', 'out_of_plane = \'space\' must be "trial", "plane" or ""'),
+        ('= "trial"', '= "plane"', 'out_of_plane = "plane" needs moduli'),
+    ],
+)
+def test_a_material_of_ones_own_says_how_zz_reaches_it(old: str, new: str, words: str, tmp_path: Path) -> None:
+    source = Path(hypoelastic.__file__).read_text()
+    own = tmp_path / "own.py"
+    own.write_text(source.replace("Hypoelastic", "Own"))
+    found = study(of(str(own)), TESTS["triaxial_compression"], 5e3, 4)
+    known = study(Hypoelastic(), TESTS["triaxial_compression"], 5e3, 4)
+    assert found.curve["q"][-1] == pytest.approx(known.curve["q"][-1], rel=1e-12)
+    own.write_text(source.replace("Hypoelastic", "Own").replace(old, new))
+    with pytest.raises(ValueError, match=words):
+        of(str(own))
 
 
 def test_a_stress_that_is_held_stays_over_many_steps() -> None:

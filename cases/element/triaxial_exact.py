@@ -10,15 +10,15 @@ Drained, p = sx + q/3, so |q| ends at (M sx + Q)/(1 -+ M/3): in compression of M
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import sqrt
+from math import cos, radians, sin, sqrt
 from typing import Any
 
 import numpy as np
 
 from mpm_verify.cases.element.element import State
 from mpm_verify.cases.element.paths import ElementTest
-from mpm_verify.solver.material.drucker_prager import CONES, DruckerPrager
-from mpm_verify.solver.material.mohr_coulomb import MohrCoulomb, apex_of, slope
+from mpm_verify.solver.material.drucker_prager import DruckerPrager
+from mpm_verify.solver.material.mohr_coulomb import MohrCoulomb, apex_of
 from mpm_verify.solver.state import Floats
 
 POINTS = 60
@@ -37,7 +37,7 @@ class Meridian:
 
 def of_mohr_coulomb(soil: MohrCoulomb, side: int) -> Meridian:
     """Meridian of compression (side 1) or extension (-1), the latter by its cut-off where that is met first."""
-    k, m = slope(soil.phi), slope(soil.psi)
+    k, m = ((1 + sin(radians(angle))) / (1 - sin(radians(angle))) for angle in (soil.phi, soil.psi))
     strength = 6 * soil.c * sqrt(k)
     if side > 0:
         return Meridian(3 * (k - 1) / (k + 2), strength / (k + 2), 1.0, 1 - m)
@@ -46,8 +46,19 @@ def of_mohr_coulomb(soil: MohrCoulomb, side: int) -> Meridian:
 
 def of_drucker_prager(soil: DruckerPrager, side: int) -> Meridian:
     """Meridian of compression (side 1) or extension (-1)."""
-    a, d = CONES[soil.cone](soil.phi, soil.psi)
-    return Meridian(sqrt(3) * a, sqrt(3) * float(soil.constants()[3]), side / sqrt(3) - d / 3, -d)
+    a, b, d = cone(soil)
+    return Meridian(sqrt(3) * a, sqrt(3) * b, side / sqrt(3) - d / 3, -d)
+
+
+def cone(soil: DruckerPrager) -> tuple[float, float, float]:
+    """Slope a, strength b and slope d of the flow of sqrt(J2) + a p - b, written anew and with phi = 0."""
+    phi, psi = radians(soil.phi), radians(soil.psi)
+    if soil.cone == "compression":
+        a, b = (6 * of / (sqrt(3) * (3 - sin(phi))) for of in (sin(phi), soil.c * cos(phi)))
+        return a, b, 6 * sin(psi) / (sqrt(3) * (3 - sin(psi)))
+    wide = sqrt(1 + sin(psi) ** 2 / 3)
+    a, b = (of * wide / (1 + sin(phi) * sin(psi) / 3) for of in (sin(phi), soil.c * cos(phi)))
+    return a, b, sin(psi) / wide
 
 
 MERIDIANS: dict[str, Callable[[Any, int], Meridian]] = {  # by the name of the material
