@@ -1,5 +1,6 @@
 """Paths from files beyond strains in the plane: ezz, stresses, legs of both, and motions with their rates."""
 
+import json
 from dataclasses import replace
 from math import sin
 from pathlib import Path
@@ -7,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from fixtures_command import Call, caller
 
 from mpm_verify.cases.element.begin import begin
 from mpm_verify.cases.element.case import check
@@ -286,3 +288,45 @@ def test_names_of_f_in_many_hands(tmp_path: Path) -> None:
     ]
     for points in same:
         np.testing.assert_array_equal(points, same[0])
+
+
+# ---- commands
+
+
+@pytest.fixture
+def verify(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> Call:
+    return caller(monkeypatch, capsys, tmp_path)
+
+
+def test_the_command_shears(verify: Call, tmp_path: Path) -> None:
+    """A path of strains to 5 and a rate: the JSON has the motion's end, and says that it was one; not with none."""
+    (tmp_path / "shear.csv").write_text("exx,eyy,gxy\n0,0,0\n0,0,5.0\n")
+    words = ("--path", str(tmp_path / "shear.csv"), "--units", "fraction", "--steps", "50", "--json")
+    code, said, err = verify("material", "hypoelastic:E=2.6,rate=jaumann", *words)
+    assert (code, err) == (0, "")
+    told = json.loads(said)
+    (one,) = told["more"].values()
+    numbers = {finding["code"]: finding["numbers"] for finding in one["findings"]}
+    assert numbers["element.path_end"]["xy"] == pytest.approx(sin(5.0), abs=1e-5)
+    assert "element.path_motion" in numbers
+    assert "element.rate_idle" not in numbers
+    assert {run["motion"] for run in told["runs"] if run["path"]} == {"simple_shear"}
+    code, said, _ = verify("material", "hypoelastic:E=2.6,rate=jaumann", *words, "--motion", "none")
+    (one,) = json.loads(said)["more"].values()
+    numbers = {finding["code"]: finding["numbers"] for finding in one["findings"]}
+    assert (code, numbers["element.path_end"]["xy"]) == (0, pytest.approx(5.0, rel=1e-9))
+    assert "element.rate_idle" in numbers
+
+
+@pytest.mark.slow
+def test_the_page_of_rates(verify: Call, tmp_path: Path) -> None:
+    """Four closed forms, a figure of all, values at whole shears, and errors by number of steps."""
+    code, said, err = verify("rates", "--steps", "50", "--out", str(tmp_path / "out"), "--json", "--page")
+    assert (code, err) == (0, "")
+    told = json.loads(said)
+    assert told["outcome"] == "PASS"
+    assert len(told["more"]) == len(available(RATES))
+    page = (tmp_path / "out" / "report.html").read_text()
+    for text in ("Objective rates in simple shear", "Stresses at whole shears, finest run", "2.7043", "800 steps"):
+        assert text in page
+    assert page.index("Objective rates in simple shear</h2>") < page.index(": Simple shear of F to 5</h2>")

@@ -158,6 +158,7 @@ def test_sand_is_held_against_quadrature() -> None:
     assert abs((other[0] - other[1]) / found.truth["q"][-1] - 1) > 1e-3
 
 
+@pytest.mark.slow
 def test_sand_at_failure() -> None:
     """Low stress: the path goes on beyond failure, whose strength and flow are known."""
     sand = Ubcsand()

@@ -136,7 +136,7 @@ def examination(
         remarks.append(Remark(ElementRemark.UNREAD, {"files": ", ".join(unread)}))
     return Examination(
         study.name, study.title, study.command, tuple(remarks), tuple(found),
-        parameters(material, run.stress, run.steps), origins(material), environment,
+        parameters(material, run.stress, run.steps, run.start), origins(material), environment,
         drawn(material, list(studies), run.stress),
     )  # fmt: skip
 
@@ -235,9 +235,11 @@ def beyond(material: Any, one: ElementStudy) -> float | None:
     return float(np.mean(PLANE_ALONE[material.name](sigma[1:])))
 
 
-def parameters(material: Any, stress: float, steps: int) -> dict[str, float | str]:
+def parameters(material: Any, stress: float, steps: int, start: str = "isotropic") -> dict[str, float | str]:
     """Parameters of the material and of the tests."""
     own: dict[str, float | str] = dict(asdict(material))
+    if start != "isotropic":
+        own["stress at the start"] = start
     return own | {
         "confining stress": 0.0 if material.energy is not None else stress,
         "steps of the coarsest run": steps,
