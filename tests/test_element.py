@@ -9,9 +9,10 @@ import pytest
 from mpm_verify.cases.element.curves import EnergyElement, columns, energy_stress, start
 from mpm_verify.cases.element.element import Element, ElementFailed, ElementFailure, State, stretch
 from mpm_verify.cases.element.exact import exact
+from mpm_verify.cases.element.following import follow, moves
 from mpm_verify.cases.element.legs import STRESS
 from mpm_verify.cases.element.path_file import from_file
-from mpm_verify.cases.element.paths import TESTS, follow, given, held, moves
+from mpm_verify.cases.element.paths import TESTS, given, held
 from mpm_verify.cases.element.study import study
 from mpm_verify.solver.material.hypoelastic import Hypoelastic
 from mpm_verify.solver.material.mohr_coulomb import MohrCoulomb

@@ -14,10 +14,12 @@ from mpm_verify.cases.element.begin import begin
 from mpm_verify.cases.element.case import check
 from mpm_verify.cases.element.curves import element_of
 from mpm_verify.cases.element.exact import exact
-from mpm_verify.cases.element.exam import checks, path_ends
+from mpm_verify.cases.element.exam import path_ends
+from mpm_verify.cases.element.following import Followed, follow
+from mpm_verify.cases.element.judged import checks
 from mpm_verify.cases.element.motion import Motion
 from mpm_verify.cases.element.path_file import from_file
-from mpm_verify.cases.element.paths import TESTS, ElementTest, Followed, follow
+from mpm_verify.cases.element.paths import TESTS, ElementTest
 from mpm_verify.cases.element.rates_exact import bend, integrated
 from mpm_verify.cases.element.run import ElementRun
 from mpm_verify.cases.element.study import study

@@ -12,8 +12,9 @@ from mpm_verify.cases.element.begin import begin, oedometric
 from mpm_verify.cases.element.case import parts
 from mpm_verify.cases.element.element import Element
 from mpm_verify.cases.element.exact import exact
+from mpm_verify.cases.element.following import follow
 from mpm_verify.cases.element.known_ends import ends
-from mpm_verify.cases.element.paths import CELL, TESTS, ElementTest, follow, given
+from mpm_verify.cases.element.paths import CELL, TESTS, ElementTest, given
 from mpm_verify.cases.element.space import takes
 from mpm_verify.cases.element.study import study
 from mpm_verify.cases.element.triaxial_exact import MERIDIANS

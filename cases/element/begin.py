@@ -8,7 +8,8 @@ import numpy as np
 
 from mpm_verify.cases.element.curves import element_of, start
 from mpm_verify.cases.element.element import Element, State
-from mpm_verify.cases.element.paths import ElementTest, follow
+from mpm_verify.cases.element.following import follow
+from mpm_verify.cases.element.paths import ElementTest
 from mpm_verify.solver.state import Floats
 
 Start = Literal["isotropic", "none", "k0", "oedometric"]

@@ -10,7 +10,8 @@ import numpy as np
 from mpm_verify.cases.element import ubcsand_exact as ubc
 from mpm_verify.cases.element.curves import columns
 from mpm_verify.cases.element.element import Element
-from mpm_verify.cases.element.paths import TESTS, Followed, follow
+from mpm_verify.cases.element.following import Followed, follow
+from mpm_verify.cases.element.paths import TESTS
 from mpm_verify.cases.harness.checks import Check
 from mpm_verify.mms.constitutive.driver import Subject
 from mpm_verify.mms.constitutive.history import tests as tests_of_memory

@@ -5,8 +5,9 @@ from typing import Any
 import numpy as np
 
 from mpm_verify.cases.element.element import Element, State, stretch
+from mpm_verify.cases.element.following import Followed
 from mpm_verify.cases.element.motion import Motion, matrices, stretches
-from mpm_verify.cases.element.paths import ElementTest, Followed
+from mpm_verify.cases.element.paths import ElementTest
 from mpm_verify.solver.state import Floats, Particles
 
 COMPLEX = 1e-30

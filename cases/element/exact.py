@@ -12,8 +12,9 @@ from mpm_verify.cases.element.axes import TRIAXIAL_TESTS
 from mpm_verify.cases.element.begin import begin
 from mpm_verify.cases.element.curves import EnergyElement, EnergyMotion, columns, start
 from mpm_verify.cases.element.element import State
+from mpm_verify.cases.element.following import Followed, follow
 from mpm_verify.cases.element.legs import STRESS
-from mpm_verify.cases.element.paths import ElementTest, Followed, follow
+from mpm_verify.cases.element.paths import ElementTest
 from mpm_verify.cases.element.rates_exact import along
 from mpm_verify.cases.element.triaxial_exact import triaxial
 from mpm_verify.solver.elastic import Elastic

@@ -14,8 +14,9 @@ from scipy.integrate import solve_ivp
 
 from mpm_verify.cases.element.curves import columns
 from mpm_verify.cases.element.element import State
+from mpm_verify.cases.element.following import Followed
 from mpm_verify.cases.element.motion import matrices
-from mpm_verify.cases.element.paths import ElementTest, Followed
+from mpm_verify.cases.element.paths import ElementTest
 from mpm_verify.mms.constitutive.simple_shear import SIMPLE_SHEAR
 from mpm_verify.solver.state import Floats
 

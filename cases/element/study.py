@@ -9,7 +9,8 @@ import numpy as np
 from mpm_verify.cases.element.begin import begin
 from mpm_verify.cases.element.curves import columns, element_of
 from mpm_verify.cases.element.exact import Columns, exact
-from mpm_verify.cases.element.paths import ElementTest, Followed, Stopped, follow
+from mpm_verify.cases.element.following import Followed, Stopped, follow
+from mpm_verify.cases.element.paths import ElementTest
 
 DOUBLED, FINE = (1, 2, 4, 8, 16), 64  # steps of the study, and of what stands for the truth where nothing is known
 ROUND_OFF = 1e-9  # relative errors below it have no order
