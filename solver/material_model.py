@@ -6,7 +6,7 @@ A model is of one of two forms: a function of F with its `energy` (solver/elasti
 
 from abc import abstractmethod
 from collections.abc import Callable
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
 from mpm_verify.solver.plugins import MATERIALS
 from mpm_verify.solver.state import Floats, Particles
@@ -36,6 +36,9 @@ class Material:
         Whether the stress is dW/dF itself: that of a function of F for small amplitudes alone.
     yields_in_plane
         Whether it yields where t = s sin(friction_angle) + cohesion cos(friction_angle).
+    out_of_plane
+        How a strain of zz reaches the kernel of a model in rate form, which sees plane strain (cases/element/space.py):
+        ``trial``, ``plane``, or empty where it cannot.
     order
         Order in the strain step, where the axes of stress turn; None: exact or unknown.
     rho0
@@ -54,6 +57,7 @@ class Material:
     sums: ClassVar[tuple[str, ...]] = ()
     small_strain: ClassVar[bool] = False
     yields_in_plane: ClassVar[bool] = False
+    out_of_plane: ClassVar[Literal["", "trial", "plane"]] = ""
     order: ClassVar[float | None] = None
     formula: ClassVar[str] = ""
     rho0: float

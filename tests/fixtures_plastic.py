@@ -97,7 +97,7 @@ def region(law: Any, trial: Floats, sigma: Floats, tolerance: float = 1e-9) -> N
     moved = np.abs(sigma - trial).max(axis=1) > near
     a, offset, _ = planes(law)
     k = -a[0].max() / a[0].min()
-    apex = offset[0] / (k - 1)
+    apex = offset[0] / (k - 1) if k > 1 else np.inf
     plane, cut = np.abs(k * s1 - s3 - offset[0]) < near * k, np.abs(s1 - law.sigma_t) < near
     major, minor = s1 - s2 < near, s2 - s3 < near
     names: list[tuple[str, Any]] = [

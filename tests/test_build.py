@@ -53,6 +53,7 @@ SAMPLES: dict[str, dict[str, str]] = {  # of each case two values of each field,
     "element": {
         "material": "mohr_coulomb,ubcsand", "test": "biaxial,isotropic", "stress": "5000,10000", "steps": "100,200",
         "path": "{here}/one.csv,{here}/two.csv", "units": "percent,fraction",
+        "start": "isotropic,k0", "motion": "none,simple_shear",
     },
     "exact": {
         "method": "cpdi,gimp", "material": "neo_hookean,hypoelastic", "test": "throw,turn",
@@ -71,6 +72,7 @@ WITH: dict[tuple[str, str], dict[str, str]] = {  # what else has to be asked for
     ("element", "path"): {"test": "path"},
     ("element", "units"): {"test": "path", "path": "{here}/one.csv"},
     ("mms", "manufacture"): {"damping": "0.05"},
+    ("element", "motion"): {"test": "path", "path": "{here}/one.csv"},
     ("mms", "start"): {"solver": f"{sys.executable} {{{{case}}}} {{{{out}}}}"},
     ("mms", "dim"): {"solver": f"{sys.executable} {{{{case}}}} {{{{out}}}}"},
     ("mms", "precision"): {"solver": f"{sys.executable} {{{{case}}}} {{{{out}}}}"},
@@ -261,7 +263,7 @@ def test_names_are_those_of_folders() -> None:
     assert build(Asked("mms", {"cells": (8,), "ppc": (4,)}), "verify").name == "mms-cpdi-cells-8-ppc-4"
 
 
-@pytest.mark.parametrize(("case", "field"), [pair for pair in EVERY if pair[1] not in ("path", "units")])
+@pytest.mark.parametrize(("case", "field"), [pair for pair in EVERY if pair[1] not in ("path", "units", "motion")])
 def test_another_value_is_another_folder(case: str, field: str, here: str) -> None:
     """Names by every field: one value after the other, and both, have different names."""
     both = asked(case, field, here)[field]

@@ -68,6 +68,26 @@ def test_return(name: str) -> None:
     assert history[:, 0].max() > 1e-3
 
 
+@pytest.mark.parametrize(("cone", "strength"), [("plane_strain", 1e3), ("compression", 2e3 / sqrt(3))])
+def test_von_mises(cone: str, strength: float) -> None:
+    """phi = 0: sqrt(J2) comes to its strength to round-off at any pressure, which stays; the return is radial."""
+    law, trial = DruckerPrager(phi=0.0, c=1e3, cone=cone), random_trials()
+    assert law.psi == 0.0
+    sigma, history = respond(law, trial)
+    p, s, root = invariants(sigma)
+    before, t, size = invariants(trial)
+    yielding = history[:, 0] > 0
+    assert yielding.sum() > COUNT / 2
+    assert np.abs(root[yielding] - strength).max() < 1e-12 * 2e4
+    assert root[~yielding].max() < strength
+    assert np.abs(p - before).max() < 1e-12 * 2e4
+    assert np.abs(s * size[:, None] - t * root[:, None]).max() < 1e-13 * 4e8
+    assert np.abs(history[:, 1]).max() == 0.0
+    almost = respond(DruckerPrager(phi=1e-6, psi=0.0, c=1e3, cone=cone), trial)[0]
+    assert np.abs(almost - sigma).max() < 1e-2  # its limit
+    assert np.isfinite(respond(law, np.array([[1e150, 0.0, -1e150, 0.0]]))[0]).all()
+
+
 def test_associated_is_the_closest_point() -> None:
     """(trial - s) . C (y - s) <= 0 for admissible y."""
     law, trial = DruckerPrager(psi=31.0, c=2e3), random_trials()[:2000]
@@ -190,7 +210,8 @@ def test_whatever_comes(values: dict[str, Any], state: tuple[float, ...]) -> Non
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("phi=0", "must lie between 0 and 90"),
+        ("phi=0", "phi = 0 must have c above zero"),
+        ("phi=0,c=1,psi=2", "psi = 2.0 must lie between 0 and phi = 0.0"),
         ("psi=40", "psi = 40.0 must lie between 0 and phi"),
         ("c=-1", "must be zero or more"),
         ("nu=0.5", "must lie between"),

@@ -73,7 +73,15 @@ def test_every_law_passes_its_own_checks(name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["mohr_coulomb:phi=25,psi=5", "mohr_coulomb:c=100", "ubcsand:Rf=0.9", "ubcsand:Pa=1e5,KGp=8"]
+    "name",
+    [
+        "mohr_coulomb:phi=25,psi=5",
+        "mohr_coulomb:c=100",
+        "mohr_coulomb:phi=0,c=1000",
+        "drucker_prager:phi=0,c=1000",
+        "ubcsand:Rf=0.9",
+        "ubcsand:Pa=1e5,KGp=8",
+    ],
 )
 def test_other_parameters_are_held_against_closed_forms(name: str) -> None:
     checks = material_checks(create("mpm_verify.solver.material", name))

@@ -22,7 +22,7 @@ from fixtures_plastic import (
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mpm_verify.solver.material.mohr_coulomb import MohrCoulomb
+from mpm_verify.solver.material.mohr_coulomb import MohrCoulomb, apex_of
 from mpm_verify.solver.plugins import create
 from mpm_verify.solver.state import Floats, Particles
 
@@ -40,6 +40,9 @@ LAWS = {  # parameters and the regions they have
     "cut associated": ({"psi": 31.0, "c": 5e3, "sigma_t": 2e3}, CUT),
     "cut without dilation": ({"psi": 0.0, "c": 5e3, "sigma_t": 2e3}, CUT),
     "auxetic": ({"nu": -0.6, "phi": 60.0, "psi": 20.0, "c": 3e3, "sigma_t": 1e3}, CUT),
+    "tresca": ({"phi": 0.0, "c": 2e3, "sigma_t": 1e9}, BARE - {"apex"}),
+    "tresca cut": ({"phi": 0.0, "c": 2e3, "sigma_t": 1e3}, CUT),
+    "tresca cut at zero": ({"phi": 0.0, "c": 2e3}, CUT),
 }
 every_law = pytest.mark.parametrize("name", LAWS)
 
@@ -53,8 +56,8 @@ def random_trials(count: int = COUNT) -> Floats:
 
 
 def planes_of(law: MohrCoulomb) -> int:
-    """9, or 6 where the cut-off is at the apex or beyond."""
-    return 6 if law.sigma_t >= law.c / tan(radians(law.phi)) else 9
+    """9, or 6 where the cut-off is at the apex or beyond, or beyond all of the trials."""
+    return 6 if law.sigma_t >= min(apex_of(law.phi, law.c), 1e8) else 9
 
 
 def difference(law: Any, trial: Floats) -> float:
@@ -122,6 +125,23 @@ def test_projection_to_the_apex_without_dilation() -> None:
     assert np.abs(out[beyond, :3] - apex).max() < 1e-13 * 2e4
     assert np.allclose(out[~beyond, :3].sum(axis=1), trial[~beyond].sum(axis=1), rtol=0, atol=1e-9)
     assert np.allclose(history[:, 1], (trial - out[:, :3]).sum(axis=1) * (1 - 2 * law.nu) / law.E, rtol=0, atol=1e-15)
+
+
+def test_tresca() -> None:
+    """phi = 0: s1 - s3 comes to 2 c to round-off at any pressure, the pressure stays, and nothing dilates."""
+    law, trial = MohrCoulomb(phi=0.0, c=1e3, sigma_t=1e9), random_trials()
+    assert law.psi == 0.0
+    out, history = respond(law, np.column_stack([trial, np.random.default_rng(2).uniform(-1e4, 1e4, COUNT)]))
+    first, _, last = eigenvalues(out).T
+    yielding = history[:, 0] > 0
+    assert yielding.sum() > COUNT / 2
+    assert np.abs((first - last)[yielding] - 2e3).max() < 1e-12 * 2e4
+    assert (first - last)[~yielding].max() < 2e3
+    assert np.abs(out[:, :3].sum(axis=1) - trial.sum(axis=1)).max() < 1e-12 * 2e4
+    assert np.abs(history[:, 1]).max() < 1e-15
+    almost, _ = respond(MohrCoulomb(phi=1e-6, psi=0.0, c=1e3, sigma_t=1e9), np.column_stack([trial, 0 * trial[:, 0]]))
+    assert np.abs(almost - respond(law, np.column_stack([trial, 0 * trial[:, 0]]))[0]).max() < 1e-2  # its limit
+    assert np.isfinite(returned(law, np.array([[1e150, 0.0, -1e150], [3e12, 3e12, -3e12]]))).all()
 
 
 @pytest.mark.parametrize("constant", range(2, 17))
@@ -377,9 +397,10 @@ def test_a_lost_strain_is_not_hidden(component: int, value: float) -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("phi=0", "phi = 0.0 must lie between 0 and 90"),
-        ("phi=90", "phi = 90.0 must lie between 0 and 90"),
-        ("phi=-5", "must lie between 0 and 90"),
+        ("phi=0", "phi = 0 must have c above zero, its strength"),
+        ("phi=0,c=1,psi=5", "psi = 5.0 must lie between 0 and phi = 0.0"),
+        ("phi=90", "phi = 90.0 must be at least 0 and below 90"),
+        ("phi=-5", "phi = -5.0 must be at least 0 and below 90"),
         ("psi=31.5", "psi = 31.5 must lie between 0 and phi = 31.0"),
         ("psi=-1", "psi = -1.0 must lie between 0 and phi"),
         ("c=-1", "c = -1.0 must be zero or more"),

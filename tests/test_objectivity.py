@@ -19,12 +19,13 @@ from mpm_verify.cases.objectivity import block as objectivity_block
 from mpm_verify.cases.objectivity import rates as objectivity_kinematic
 from mpm_verify.cases.objectivity.axes import KINEMATIC, Block
 from mpm_verify.cases.objectivity.block import PRINTED, REST, SMALL, blocks, misses, numbers
-from mpm_verify.cases.objectivity.exact import SIMPLE_SHEAR, rotated
+from mpm_verify.cases.objectivity.exact import rotated
 from mpm_verify.cases.objectivity.exam import examination
 from mpm_verify.cases.objectivity.execute import ObjectivityResult, execute
 from mpm_verify.cases.objectivity.findings import INERTIA, MODERATE, ObjectivityRemark, lead, of_runs
 from mpm_verify.cases.objectivity.rates import CONTROLS
 from mpm_verify.cases.objectivity.turning_block import turn
+from mpm_verify.mms.constitutive.simple_shear import SIMPLE_SHEAR
 from mpm_verify.reports.frames import read
 from mpm_verify.reports.sentences import failures
 from mpm_verify.reports.sentences.remarks import notes, sentence

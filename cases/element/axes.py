@@ -11,10 +11,15 @@ from mpm_verify.solver.plugins import MATERIALS
 
 CONFINED = 5e3  # the scale of the paper's column
 PROPERTIES, PATH = "properties", "path"  # what is known of the material beside curves; the path of a file
-TEST_NAMES = (
+PLANE_TESTS = (
     "isotropic", "oedometric", "biaxial", "constant_s", "shear_stress", "shear_volume", "undrained", "cyclic_shear",
 )  # fmt: skip
-AXES = {"test": (*TEST_NAMES, PROPERTIES)}
+TRIAXIAL_TESTS = ("triaxial_compression", "triaxial_extension", "triaxial_undrained")
+MOTION_TESTS = ("finite_shear",)
+TEST_NAMES = (*PLANE_TESTS, *TRIAXIAL_TESTS, *MOTION_TESTS)
+STARTS = ("isotropic", "none", "k0", "oedometric")
+MOTIONS = ("none", "simple_shear")
+AXES = {"test": (*PLANE_TESTS, PROPERTIES)}
 
 
 @dataclass(frozen=True)
@@ -25,10 +30,17 @@ class ElementRun(RunRecord):
     test: str = axis("biaxial", f"{', '.join(TEST_NAMES)}, or {PROPERTIES}: tables and limits of the material.",
                      choices=(*TEST_NAMES, PROPERTIES))  # fmt: skip
     stress: float = axis(CONFINED, "Isotropic stress at the start, compression positive, Pa.")
+    start: str = axis("isotropic", "Stress at the start: isotropic; none; k0, lateral 1 - sin phi of the vertical "
+                      "--stress; oedometric, as loading without lateral strain by the material itself leaves.",
+                      choices=STARTS)  # fmt: skip
     steps: int = axis(100, "Strain steps of the coarsest run; the finest has 16 times as many; from 50 on they settle.")
-    path: str = axis("", "CSV file with a strain path: columns exx, eyy and exy, or gxy = 2 exy.")
+    path: str = axis("", "CSV file with a path: columns exx, eyy, exy or gxy = 2 exy, ezz; sxx, syy, sxy, szz for "
+                     "stresses; or Fxx, Fxy, Fyx, Fyy, Fzz.")  # fmt: skip
     units: str = axis("", "Units of the strains in that file: percent or fraction; usual is what its header says.",
                       choices=("percent", "fraction"))  # fmt: skip
+    motion: str = axis("none", "Strains of that file as a motion: simple_shear, F = [[1, gxy], [0, 1]] diag(exp exx, "
+                       "exp eyy), so that the rate counts; usual where the material is given one.",
+                       choices=MOTIONS)  # fmt: skip
     case: ClassVar[str] = "element"
 
     def __post_init__(self) -> None:
@@ -43,6 +55,11 @@ class ElementRun(RunRecord):
             raise ValueError("path = FILE.csv and test = path belong together; give both or neither")
         if self.units and not self.path:
             raise ValueError("units needs a strain path from a file; give path = FILE.csv too")
+        if self.motion != "none" and not self.path:
+            raise ValueError("motion needs a strain path from a file; give path = FILE.csv too")
+        for name, words in (("start", STARTS), ("motion", MOTIONS)):
+            if getattr(self, name) not in words:
+                raise ValueError(f"no {name} {getattr(self, name)!r}; choose from {', '.join(words)}")
 
     @property
     def cost(self) -> float:

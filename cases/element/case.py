@@ -12,19 +12,26 @@ from typing import Any
 
 import numpy as np
 
+from mpm_verify.cases.element.axes import PLANE_TESTS, TRIAXIAL_TESTS
+from mpm_verify.cases.element.begin import begin
+from mpm_verify.cases.element.element import SPACE
 from mpm_verify.cases.element.exam import examination
 from mpm_verify.cases.element.execute import test_of
+from mpm_verify.cases.element.paths import ElementTest
 from mpm_verify.cases.element.run import AXES, CONFINED, PATH, PROPERTIES, ElementResult, ElementRun
+from mpm_verify.cases.element.space import takes
 from mpm_verify.cases.element.study import ElementStudy
+from mpm_verify.cases.harness.build import Asked
 from mpm_verify.cases.harness.checks import Check, Examination, gathered
 from mpm_verify.cases.harness.store import Store, StoreError
 from mpm_verify.cases.harness.study import Study
 from mpm_verify.solver.plugins import MATERIALS, create, label
 from mpm_verify.solver.plugins import canonical as canonical_name
 
-__all__ = ["AXES", "Result", "Run", "canonical", "check", "examine", "title"]
+__all__ = ["AXES", "Result", "Run", "canonical", "check", "examine", "parts", "title"]
 
 Run, Result = ElementRun, ElementResult
+Key = tuple[str, float, str, int]  # material, stress, start and steps
 
 
 @dataclass(frozen=True)
@@ -55,30 +62,57 @@ def canonical(values: dict[str, Any]) -> dict[str, Any]:
 def check(runs: Sequence[ElementRun]) -> None:
     """Raise ValueError with one line for a file that cannot be read, or a stress that the material cannot have."""
     for run in runs:
-        if run.path:
-            test_of(run)
+        if run.test != PROPERTIES:
+            check_test(run, test_of(run))
         if run.stress != CONFINED and create(MATERIALS, run.material).energy is not None:
             raise ValueError(
                 f"stress = {run.stress:g}: a material with a stress from F starts undeformed; leave stress out"
             )
 
 
+def check_test(run: ElementRun, test: ElementTest) -> None:
+    """Raise ValueError for a test that the material cannot be put through, or a start that it cannot have."""
+    material = create(MATERIALS, run.material)
+    what = run.path or run.test
+    out = test.size == SPACE or (test.motion and (test.points[:, 3] != 1).any())
+    if out and not takes(material):
+        why = "keeps a void strain" if getattr(material, "void", 0) else "is in plane strain"
+        raise ValueError(f"{what} strains zz, and {run.material} {why} here; choose a test or path without")
+    if test.motion and out and material.rate == "truesdell":
+        raise ValueError(f"{what} strains zz, which rate=truesdell does not carry here; choose another rate")
+    if run.start != "isotropic":
+        if material.energy is not None:
+            raise ValueError(f"start = {run.start}: a material with a stress from F starts undeformed; leave start out")
+        begin(material, test, run.stress, run.start)
+
+
+def parts(asked: Asked) -> list[Asked]:
+    """One for each material where tests are not asked for: those that can be strained out of the plane do it too."""
+    if "test" in asked.values or "path" in asked.values:
+        return [asked]
+    found = []
+    for name in asked.values.get("material", (ElementRun.material,)):
+        tests = (*PLANE_TESTS, *(TRIAXIAL_TESTS if takes(create(MATERIALS, name)) else ()), PROPERTIES)
+        found.append(replace(asked, values={**asked.values, "material": (name,), "test": tests}))
+    return found
+
+
 def examine(study: Study[ElementRun], results: Mapping[str, ElementResult], store: Store) -> ElementAnalysis:
     """Judge what is stored, one material, stress and number of steps after the other."""
-    groups: dict[tuple[str, float, int], list[ElementResult]] = {}
+    groups: dict[Key, list[ElementResult]] = {}
     for run in study.runs:
         if run.digest in results:
-            groups.setdefault((run.material, run.stress, run.steps), []).append(results[run.digest])
+            groups.setdefault((run.material, run.stress, run.start, run.steps), []).append(results[run.digest])
     return ElementAnalysis({named(key, list(groups)): _one(study, mine, store) for key, mine in groups.items()})
 
 
-def named(key: tuple[str, float, int], among: Sequence[tuple[str, float, int]]) -> str:
-    """Material, stress and steps of one among several, as far as they tell it apart: `ubcsand, 20 steps`."""
-    material, stress, steps = key
-    materials, stresses, counts = (len(set(values)) for values in zip(*among, strict=True))
+def named(key: Key, among: Sequence[Key]) -> str:
+    """Material, stress, start and steps of one among several, as far as they tell it apart: `ubcsand, 20 steps`."""
+    material, stress, start, steps = key
+    materials, stresses, starts, counts = (len(set(values)) for values in zip(*among, strict=True))
     distinct = len({label(one) for one, *_ in among}) == materials  # not of two files of one name
     words = [label(material) if distinct else material] * (materials > 1)
-    words += [f"{stress:g} Pa"] * (stresses > 1) + [f"{steps} steps"] * (counts > 1)
+    words += [f"{stress:g} Pa"] * (stresses > 1) + [f"start {start}"] * (starts > 1) + [f"{steps} steps"] * (counts > 1)
     return ", ".join(words) or label(material)
 
 

@@ -10,7 +10,8 @@ import numpy as np
 from mpm_verify.cases.element import ubcsand_exact as ubc
 from mpm_verify.cases.element.curves import columns
 from mpm_verify.cases.element.element import Element
-from mpm_verify.cases.element.paths import TESTS, Followed, follow
+from mpm_verify.cases.element.following import Followed, follow
+from mpm_verify.cases.element.paths import TESTS
 from mpm_verify.cases.harness.checks import Check
 from mpm_verify.mms.constitutive.driver import Subject
 from mpm_verify.mms.constitutive.history import tests as tests_of_memory
@@ -103,6 +104,18 @@ def davis(material: Any) -> list[Check]:
     ]
 
 
+def frictionless(material: Any) -> list[Check]:
+    """Check of phi = 0: simple shear ends at the cohesion, that of the compression cone at 2 / sqrt(3) of it."""
+    if material.friction_angle != 0:
+        return []
+    known = 2 / np.sqrt(3) if getattr(material, "cone", "") == "compression" else 1.0
+    end = run(material, "shear_stress", 8 * material.c / material.mu, 10 * material.c)
+    found = float(end.sigma[-1, 3]) / material.c
+    return [
+        Check("Simple shear at failure", "shear stress over cohesion, phi = 0", found, known, "absolute", FORM, 1e-12)
+    ]
+
+
 def mohr_coulomb(material: MohrCoulomb) -> list[Check]:
     """Checks of Mohr-Coulomb: returns of the table where the angles are its own, Davis' ratio, both sides of yield."""
     found = (
@@ -125,7 +138,7 @@ def mohr_coulomb(material: MohrCoulomb) -> list[Check]:
     if K0 * k > 1:
         slid = run(material, "oedometric", 0.01, 1.0).history[-1, 0]
         found.append(Check(group, "plastic strain of an elastic K0 state", slid, 0.0, "absolute", "K0 k > 1", 0.0))
-    return found + davis(material)
+    return found + davis(material) + frictionless(material)
 
 
 def returns(material: MohrCoulomb) -> list[Check]:
@@ -145,7 +158,7 @@ def returns(material: MohrCoulomb) -> list[Check]:
 
 def drucker_prager(material: DruckerPrager) -> list[Check]:
     """Checks of Drucker-Prager: the cone matched in plane strain fails as Mohr-Coulomb does, in steady shear."""
-    return davis(material)
+    return davis(material) + frictionless(material)
 
 
 def ubcsand(material: Ubcsand) -> list[Check]:

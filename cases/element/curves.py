@@ -4,21 +4,43 @@ from typing import Any
 
 import numpy as np
 
-from mpm_verify.cases.element.element import Element, State
-from mpm_verify.cases.element.paths import ElementTest, Followed
+from mpm_verify.cases.element.element import Element, State, stretch
+from mpm_verify.cases.element.following import Followed
+from mpm_verify.cases.element.motion import Motion, matrices, stretches
+from mpm_verify.cases.element.paths import ElementTest
 from mpm_verify.solver.state import Floats, Particles
 
 COMPLEX = 1e-30
 
 
 def columns(test: ElementTest, found: Followed) -> dict[str, Floats]:
-    """Columns s, t, tau, sx, sy, sz of the stress; gamma (e1 - e3, or the shear of a shear test), ev, ey of strain."""
+    """Columns s, t, tau, sx, sy, sz of the stress; gamma (e1 - e3, or the shear of a shear test), ev, ey of strain.
+
+    With zz also p, q = sy - sx, ex and ez; strains of a motion are logarithmic, its shear is Fxy/Fyy.
+    """
     xx, yy, zz, xy = found.sigma.T
-    exx, eyy, exy = found.strain.T
     radius = np.hypot((xx - yy) / 2, xy)
-    gamma = 2 * exy if test.shear else np.hypot(exx - eyy, 2 * exy)
     stress = {"s": -(xx + yy) / 2, "t": radius, "tau": xy, "sx": -xx, "sy": -yy, "sz": -zz}
-    return stress | {"gamma": gamma, "ev": -(exx + eyy), "ey": -eyy}
+    if test.motion:
+        return stress | moved(test, found.strain)
+    exx, eyy, exy, *out = found.strain.T
+    ezz = out[0] if out else np.zeros(len(exx))
+    gamma = 2 * exy if test.shear else np.hypot(exx - eyy, 2 * exy)
+    strains = {"gamma": gamma, "ev": -(exx + eyy + ezz), "ey": -eyy}
+    if not out:
+        return stress | strains
+    return stress | strains | {"p": -(xx + yy + zz) / 3, "q": xx - yy, "ex": -exx, "ez": -ezz}
+
+
+def moved(test: ElementTest, F: Floats) -> dict[str, Floats]:
+    """Columns gamma, ev and ey of a motion F (N,5)."""
+    xx, yy, xy, zz, yx = F.T
+    large, small = stretches(F).T
+    return {
+        "gamma": xy / yy if test.shear else large - small,
+        "ev": -np.log((xx * yy - xy * yx) * zz),
+        "ey": -np.log(np.hypot(xy, yy)),
+    }
 
 
 class EnergyElement(Element):
@@ -30,12 +52,23 @@ class EnergyElement(Element):
         return [State(strain, energy_stress(self.material, strain), np.zeros(0)) for strain in strains]
 
 
-def energy_stress(material: Any, strain: Floats) -> Floats:
-    """Stress xx, yy, zz, xy (4,) for F = exp(strain): P F^T / J, or P itself of a material of small strains."""
-    from mpm_verify.cases.element.element import stretch
+class EnergyMotion(Motion):
+    """The same along a motion."""
 
+    def of_F(self, ends: Floats) -> Floats:
+        """Stress (n,4) of F (n,5)."""
+        return np.array([stress_of(self.material, F) for F in matrices(ends)])
+
+
+def energy_stress(material: Any, strain: Floats) -> Floats:
+    """Stress xx, yy, zz, xy (4,) for F = exp(strain), see `stress_of`."""
     F = np.eye(3)
     F[:2, :2] = stretch(strain)
+    return stress_of(material, F)
+
+
+def stress_of(material: Any, F: Floats) -> Floats:
+    """Stress xx, yy, zz, xy (4,) of F (3,3): P F^T / J, or P itself of a material of small strains."""
     P = np.empty((3, 3))
     for i in range(3):
         for j in range(3):
@@ -53,6 +86,11 @@ def small(material: Any) -> bool:
     p.F = np.array([np.eye(2) + factor * np.array([[0.1, 0.02], [0.02, -0.05]]) for factor in (1.0, 2.0, 3.0)])
     material.update(p, 1.0)
     return bool(np.allclose(p.sigma[2] - p.sigma[1], p.sigma[1] - p.sigma[0], rtol=1e-9))
+
+
+def element_of(material: Any, test: ElementTest) -> Element:
+    """Element that drives a test: along a motion, or in the frame of the material."""
+    return Motion(material) if test.motion else Element(material)
 
 
 def start(material: Any, test: ElementTest, stress: float) -> Floats:

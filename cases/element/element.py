@@ -1,8 +1,8 @@
 """One element of a material without a grid: strains or stresses are given, the rest is found, step by step.
 
 The material works in its own frame, so no rotation is involved. Strains are logarithmic, tensor components xx, yy, xy,
-tension positive, zz = 0 (plane strain). A material in rate form is asked by its kernel; one with a
-stress from F by F = exp(strain).
+tension positive; zz is a fourth where it is strained, and zero in plane strain. A material in rate form is asked by its
+kernel; one with a stress from F by F = exp(strain). What turns has a motion instead of strains: motion.py.
 """
 
 from collections.abc import Callable
@@ -14,10 +14,14 @@ from typing import Any
 
 import numpy as np
 
+from mpm_verify.cases.element.space import plane
+from mpm_verify.cases.element.space import respond as respond_in_space
 from mpm_verify.solver.state import Floats, Particles
 
 TOLERANCE, ENOUGH = 1e-13, 1e-12  # of the residuals' scales: where Newton ends, and what round-off may leave
 ATTEMPTS, NUDGE = 60, 1e-7
+CORNER, ALIKE = 1e-10, 1e-7  # on an edge: what round-off may leave, and a stiffness that is none, as a fraction
+PLANE, SPACE, MOTION = 3, 4, 5  # components of strain in the plane, with zz, and of the F of a motion
 
 
 class ElementFailure(StrEnum):
@@ -37,14 +41,17 @@ class ElementFailed(Exception):  # noqa: N818 - what cannot go on is a result
 
 @dataclass(frozen=True)
 class State:
-    """State of an element: strain (3,): xx, yy, xy; sigma (4,): xx, yy, zz, xy; history (H,)."""
+    """State of an element: strain (3,): xx, yy, xy, or (4,) with zz; sigma (4,): xx, yy, zz, xy; history (H,).
+
+    Of a motion `strain` is F (5,): xx, yy, xy, zz, yx.
+    """
 
     strain: Floats
     sigma: Floats
     history: Floats
 
 
-# Residuals (3,) of a step, zero where it is as asked: of the strain increment (3,) and of the state at its end.
+# Residuals of a step, zero where it is as asked: of the strain increment, as many, and of the state at its end.
 Control = Callable[[Floats, State], Floats]
 
 
@@ -67,13 +74,13 @@ class Element:
         return State(np.zeros(3), np.zeros(4), np.zeros(0))
 
     def step(self, state: State, increments: Floats) -> list[State]:
-        """States after each of the strain increments (n,3), all from the same state."""
+        """States after each of the strain increments (n,3) or (n,4), all from the same state."""
         count = len(increments)
         strains = state.strain + increments
         if self.material.respond is not None:
-            sigma, history = np.tile(state.sigma, count), np.tile(state.history, count)
-            self.material.respond(self.constants, sigma, np.ascontiguousarray(increments).ravel(), history)
-            rows, memories = sigma.reshape(count, 4), history.reshape(count, -1)
+            rows, memories = np.tile(state.sigma, (count, 1)), np.tile(state.history, (count, 1))
+            respond = plane if increments.shape[1] == PLANE else respond_in_space
+            respond(self.material, self.constants, rows, increments, memories)
         else:
             p = Particles(np.zeros((count, 2)), np.ones(count), np.ones(count), np.zeros((count, 0)))
             p.F = np.ascontiguousarray(stretch(strains))
@@ -81,8 +88,11 @@ class Element:
             rows, memories = p.sigma, np.zeros((count, 0))
         return [State(*parts) for parts in zip(strains, rows, memories, strict=True)]
 
-    def solve(self, state: State, control: Control, guess: Floats, scale: Floats) -> State:
-        """State after one step under a control; `scale` (3,) is the size of its residuals. Raises ElementFailed.
+    def solve(self, state: State, control: Control, guess: Floats, scale: Floats, corner: bool = False) -> State:
+        """State after one step under a control; `scale` is the size of its residuals. Raises ElementFailed.
+
+        With `corner` stresses may lie on an edge of a yield surface: strains that they do not tell apart stay as in the
+        guess, and round-off may leave CORNER.
 
         Newton with a tangent by differences, and half the step where that does not bring the residual down: a corner
         of a yield surface has a tangent on either side. It ends at round-off: where no shorter step is better.
@@ -90,7 +100,7 @@ class Element:
         nudge = NUDGE * max(1e-6, float(np.abs(guess).max()))
         x, best = guess.copy(), np.inf
         for _ in range(ATTEMPTS):
-            moves = x + nudge * np.vstack([np.zeros(3), np.eye(3)])
+            moves = x + nudge * np.vstack([np.zeros(len(x)), np.eye(len(x))])
             ends = self.step(state, moves)
             residuals = np.array([control(move, end) / scale for move, end in zip(moves, ends, strict=True)])
             best = float(np.abs(residuals[0]).max())
@@ -99,12 +109,14 @@ class Element:
             if best < TOLERANCE:
                 return ends[0]
             # Least squares: perfect plasticity may leave a tangent without an inverse on the way.
-            newton = np.linalg.lstsq((residuals[1:] - residuals[0]).T / nudge, -residuals[0], rcond=1e-13)[0]
+            newton = np.linalg.lstsq(
+                (residuals[1:] - residuals[0]).T / nudge, -residuals[0], rcond=ALIKE if corner else 1e-13
+            )[0]
             better = self._shorten(state, control, x, newton, scale, best)
             if better is None:
                 break
             x = better
-        if best < ENOUGH:
+        if best < (CORNER if corner else ENOUGH):
             return self.step(state, x[None])[0]
         raise ElementFailed(ElementFailure.NO_STRAIN, best)
 
@@ -118,6 +130,13 @@ class Element:
                 if float(np.abs(control(candidate, end) / scale).max()) < best:
                     return np.asarray(candidate)
         return None
+
+
+def finite(state: State) -> State:
+    """Give the state back; ElementFailed where its stress is not finite."""
+    if not np.isfinite(state.sigma).all():
+        raise ElementFailed(ElementFailure.NOT_FINITE)
+    return state
 
 
 def stretch(strain: Floats) -> Floats:

@@ -7,9 +7,18 @@ import numpy as np
 from scipy.optimize import brentq
 
 from mpm_verify.cases.element import ubcsand_exact as ubc
-from mpm_verify.cases.element.curves import EnergyElement, columns, start
-from mpm_verify.cases.element.paths import ElementTest, Followed, follow
+from mpm_verify.cases.element import ubcsand_triaxial
+from mpm_verify.cases.element.axes import TRIAXIAL_TESTS
+from mpm_verify.cases.element.begin import begin
+from mpm_verify.cases.element.curves import EnergyElement, EnergyMotion, columns, start
+from mpm_verify.cases.element.element import State
+from mpm_verify.cases.element.following import Followed, follow
+from mpm_verify.cases.element.legs import STRESS
+from mpm_verify.cases.element.paths import ElementTest
+from mpm_verify.cases.element.rates_exact import along
+from mpm_verify.cases.element.triaxial_exact import triaxial
 from mpm_verify.solver.elastic import Elastic
+from mpm_verify.solver.material.drucker_prager import DruckerPrager
 from mpm_verify.solver.material.mohr_coulomb import MohrCoulomb, slope
 from mpm_verify.solver.material.ubcsand import Ubcsand
 from mpm_verify.solver.state import Floats
@@ -18,22 +27,44 @@ Columns = dict[str, Floats]
 POINTS = 60
 
 
-def exact(material: Any, test: ElementTest, stress: float) -> tuple[Columns, str] | None:
-    """Columns of the exact curve, and what it is; None where nothing is known."""
+def exact(material: Any, test: ElementTest, stress: float, begun: State | None = None) -> tuple[Columns, str] | None:
+    """Columns of the exact curve, and what it is; None where nothing is known.
+
+    `begun` is the state at the start, the isotropic `stress` if it is left out.
+    """
     if material.energy is not None:
-        found = follow(EnergyElement(material), test, test.steps(POINTS), start(material, test, stress))
+        kind = EnergyMotion if test.motion else EnergyElement
+        found = follow(kind(material), test, test.steps(POINTS), start(material, test, stress))
         return columns(test, found), "derivative of the energy"
-    return EXACT[material.name](material, test, stress) if material.name in EXACT else None
+    begun = begin(material, test, stress) if begun is None else begun
+    known = EXACT.get(material.name)
+    if known is None or (not isotropic(begun) and test.name not in TRIAXIAL_TESTS and material.name != "hypoelastic"):
+        return None
+    return known(material, test, begun)
 
 
-def hypoelastic(material: Elastic, test: ElementTest, stress: float) -> tuple[Columns, str]:
-    """Elastic curve of any test, and its source."""
-    return elastic(material, test, stress), "linear elasticity"
+def isotropic(begun: State) -> bool:
+    """Whether the stress at the start is isotropic, and some."""
+    return bool(np.ptp(begun.sigma[:3]) == begun.sigma[3] == 0 and begun.sigma[0])
 
 
-def elastic(material: Elastic, test: ElementTest, stress: float) -> Columns:
-    """Elastic curve of any test: the three conditions are linear in the strain."""
-    D = material.lam * np.array([[1, 1, 0], [1, 1, 0], [0, 0, 0]]) + 2 * material.mu * np.eye(3)
+def hypoelastic(material: Elastic, test: ElementTest, begun: State) -> tuple[Columns, str] | None:
+    """Elastic curve of any test, and its source; along a motion that of its rate."""
+    if test.motion:
+        return along(material, test, begun)
+    return (legs(material, test, begun) if test.mixed else elastic(material, test, begun)), "linear elasticity"
+
+
+def stiffness(material: Elastic, size: int) -> Floats:
+    """Stiffness (n,n) of the components xx, yy, xy and zz."""
+    even = np.array([1.0, 1.0, 0.0, 1.0])[:size]
+    D: Floats = material.lam * np.outer(even, even) + 2 * material.mu * np.eye(size)
+    return D
+
+
+def elastic(material: Elastic, test: ElementTest, begun: State) -> Columns:
+    """Elastic curve of any test: its conditions are linear in the strain."""
+    D = stiffness(material, test.size)
     if len(test.points):
         strain = test.points - test.points[0]
     else:
@@ -43,16 +74,34 @@ def elastic(material: Elastic, test: ElementTest, stress: float) -> Columns:
             rows.append(weights if condition.of == "strain" else weights @ D)
             right.append(condition.fraction if condition.of == "strain" else 0.0)
         strain = test.gone(test.steps(POINTS))[:, None] * np.linalg.solve(np.array(rows), np.array(right))
-    plane = strain @ D
-    bulk = material.lam * (strain[:, 0] + strain[:, 1])
-    sigma = start(material, test, stress) + np.column_stack([plane[:, 0], plane[:, 1], bulk, plane[:, 2]])
+    return elastic_columns(material, test, begun, strain)
+
+
+def legs(material: Elastic, test: ElementTest, begun: State) -> Columns:
+    """Elastic corners of a path from a file: of each component the strain is given, or the stress."""
+    D, sigma = stiffness(material, test.size), begun.sigma[STRESS[: test.size]]
+    strain = [np.zeros(test.size)]
+    for wanted, target in zip(test.points[1:], test.targets[1:], strict=True):
+        given = np.isfinite(wanted)
+        rows = np.where(given[:, None], np.eye(test.size), D)
+        strain.append(np.linalg.solve(rows, np.where(given, wanted, target - sigma)))
+    return elastic_columns(material, test, begun, np.array(strain))
+
+
+def elastic_columns(material: Elastic, test: ElementTest, begun: State, strain: Floats) -> Columns:
+    """Columns of the strains (N,n) of an elastic solid."""
+    D = stiffness(material, 4)[:, : test.size]
+    sigma = begun.sigma + (strain @ D.T)[:, STRESS]  # xx, yy, zz, xy: the order of both is undone by the same swap
     return columns(test, Followed(strain, sigma, np.zeros((len(strain), 0))))
 
 
-def sand(material: Ubcsand, test: ElementTest, stress: float) -> tuple[Columns, str] | None:
-    """Curve of UBCSAND without cohesion: isotropic compression, shear at constant s, drained biaxial compression."""
+def sand(material: Ubcsand, test: ElementTest, begun: State) -> tuple[Columns, str] | None:
+    """Curve of UBCSAND without cohesion: isotropic compression, shear at constant s, biaxial, triaxial tests."""
     if material.c:
         return None
+    if test.name in TRIAXIAL_TESTS:
+        return ubcsand_triaxial.triaxial(material, test, begun)
+    stress = -float(begun.sigma[0])
     if test.name == "isotropic" and material.ne == material.me:
         ev = np.linspace(0, test.length, POINTS)
         s = np.array([ubc.isotropic(material, stress, float(e)) for e in ev])
@@ -65,6 +114,14 @@ def sand(material: Ubcsand, test: ElementTest, stress: float) -> tuple[Columns, 
     if test.name == "biaxial":
         eta = np.linspace(0, reached(material, stress, test.length), POINTS)
         gamma, ev = np.array([ubc.biaxial(material, stress, float(e)) for e in eta]).T
+        if left := max(test.length - float(ev[-1] + gamma[-1]) / 2, 0.0):  # beyond failure: a constant flow
+            flow = material.eta_cv - material.eta_f
+            slip = 2 * left / (1 + flow)
+            eta, gamma, ev = (
+                np.append(eta, eta[-1]),
+                np.append(gamma, gamma[-1] + slip),
+                np.append(ev, ev[-1] + flow * slip),
+            )
         strains = {"gamma": gamma, "ev": ev, "ey": (ev + gamma) / 2}
         return ratios(stress / (1 - eta), eta) | strains, "quadrature"
     return None
@@ -88,12 +145,15 @@ def vertical(material: Ubcsand, stress: float, eta: float) -> float:
     return sum(ubc.biaxial(material, stress, eta)) / 2
 
 
-def perfect(material: MohrCoulomb, test: ElementTest, stress: float) -> tuple[Columns, str] | None:
-    """Curve of Mohr-Coulomb: elastic where the test does not yield, and biaxial compression on both sides of yield."""
+def perfect(material: MohrCoulomb, test: ElementTest, begun: State) -> tuple[Columns, str] | None:
+    """Curve of Mohr-Coulomb: elastic where it does not yield, biaxial and triaxial tests on both sides of yield."""
+    if test.name in TRIAXIAL_TESTS:
+        return triaxial(material, test, begun)
+    stress = -float(begun.sigma[0])
     k, m = slope(material.phi), slope(material.psi)
     K0 = material.nu / (1 - material.nu)
     if test.name == "isotropic" or (test.name == "oedometric" and K0 * k >= 1):
-        return elastic(material, test, stress), "linear elasticity"
+        return elastic(material, test, begun), "linear elasticity"
     if test.name != "biaxial":
         return None
     strong = k * stress + 2 * material.c * np.sqrt(k)
@@ -106,8 +166,14 @@ def perfect(material: MohrCoulomb, test: ElementTest, stress: float) -> tuple[Co
     return stresses | {"gamma": 2 * ey - ev, "ev": ev, "ey": ey}, "closed form"
 
 
+def smooth(material: DruckerPrager, test: ElementTest, begun: State) -> tuple[Columns, str] | None:
+    """Curve of Drucker-Prager: triaxial tests."""
+    return triaxial(material, test, begun) if test.name in TRIAXIAL_TESTS else None
+
+
 # By the name of the material.
-EXACT: dict[str, Callable[[Any, ElementTest, float], tuple[Columns, str] | None]] = {
+EXACT: dict[str, Callable[[Any, ElementTest, State], tuple[Columns, str] | None]] = {
+    "drucker_prager": smooth,
     "hypoelastic": hypoelastic,
     "mohr_coulomb": perfect,
     "ubcsand": sand,

@@ -8,15 +8,15 @@ from typing import Any
 import numpy as np
 
 from mpm_verify.cases.element.drawn import drawn
+from mpm_verify.cases.element.following import Stopped
+from mpm_verify.cases.element.judged import checks
 from mpm_verify.cases.element.paths import PathSource
 from mpm_verify.cases.element.run import ElementRun
 from mpm_verify.cases.element.study import FINE, ROUND_OFF, ElementStudy
 from mpm_verify.cases.harness.checks import Check, Examination, Remark
 from mpm_verify.cases.harness.study import Study
 from mpm_verify.solver.material.ubcsand import Ubcsand, out_of_range
-from mpm_verify.solver.plugins import split
-
-SETTLED = 50  # steps of the coarsest run from which on sound models have their order: 1.89 with 40, 1.91 with 50
+from mpm_verify.solver.plugins import label, split
 
 
 class ElementRemark(StrEnum):
@@ -43,32 +43,16 @@ class ElementRemark(StrEnum):
     CORRELATION = "element.correlation"
     OUR_READING = "element.our_reading"
     RATE_IDLE = "element.rate_idle"  # along a path of strains
+    RATE_ACTS = "element.rate_acts"  # along a motion: what turns, and how well steps resolve it
     PATH_READ = "element.path_read"  # columns of a file
+    PATH_END = "element.path_end"  # the stress there
+    PATH_STOPPED = "element.path_stopped"
+    PATH_STRESSES = "element.path_stresses"  # columns that control a stress
+    PATH_MOTION = "element.path_motion"  # strains that are read as simple shear
+    PLANE_YIELDS = "element.plane_yields"  # of a material that a strain of zz does not make yield
     PATH_ZERO = "element.path_zero"  # in every row, as in plane strain
     PATH_UNUSED = "element.path_unused"
     UNREAD = "element.unread"  # files of curves that cannot be read
-
-
-def checks(material: Any, studied: ElementStudy) -> list[Check]:
-    """Checks of a test: it ends, is as close to the exact curve as its order says, and has the material's order.
-
-    A run of fewer than SETTLED steps may end early, as no strain of such a size leads to what is asked, and orders have
-    not settled there: neither is judged.
-    """
-    group, found, settled = studied.test.title, [], studied.test.steps(SETTLED)
-    if studied.failed and studied.failed.steps < settled:
-        return []
-    if studied.failed:
-        at = f"step {studied.failed.step} of {studied.failed.steps}"
-        return [Check(group, f"early end, at {at}", float("nan"), 0.0, "absolute", "all steps solved")]
-    finest = studied.errors[-1]
-    if studied.source:
-        second = 1e-6 * (1600 / studied.steps[-1]) ** 2  # what order 2 makes of 1e-6 in 1600 steps
-        allowed = max(second, ROUND_OFF) if material.order == 2 else ROUND_OFF
-        found.append(Check(group, "error at the end, finest", finest, allowed, "at_most", studied.source))
-    if material.order == 2 and studied.steps[0] >= settled and not studied.test.cyclic and not len(studied.test.points):
-        found.append(Check(group, "order in the strain step", studied.order, 1.9, "at_least", "midpoint scheme"))
-    return found
 
 
 def examination(
@@ -83,13 +67,19 @@ def examination(
 ) -> Examination:
     """Examination of the tests of one material, with what is known of it; `unread`: files that cannot be read."""
     found = [*(check for one in studies for check in checks(material, one)), *known]
-    remarks = [*lead(material, studies, found), *rate_idle(run.material), *read(reads)]
+    still = not any(one.test.motion for one in studies)
+    remarks = [
+        *lead(material, studies, found),
+        *(rate_idle(run.material) if still else []),
+        *read(reads),
+        *path_ends(studies),
+    ]
     remarks += [remark for one in studies for remark in notes(material, one)]
     if unread:
         remarks.append(Remark(ElementRemark.UNREAD, {"files": ", ".join(unread)}))
     return Examination(
         study.name, study.title, study.command, tuple(remarks), tuple(found),
-        parameters(material, run.stress, run.steps), origins(material), environment,
+        parameters(material, run.stress, run.steps, run.start), origins(material), environment,
         drawn(material, list(studies), run.stress),
     )  # fmt: skip
 
@@ -105,12 +95,36 @@ def read(sources: Sequence[PathSource]) -> list[Remark]:
     found = []
     for one in sources:
         used, zero, unused = (", ".join(names) for names in (one.used, one.zero, one.unused))
-        found.append(Remark(ElementRemark.PATH_READ, {"file": one.name, "used": used, "largest": one.largest}))
+        found.append(Remark(ElementRemark.PATH_READ, {"file": one.name, "used": used, "largest": one.largest,
+                                                      "motion": one.motion}))  # fmt: skip
+        if one.stresses:
+            found.append(Remark(ElementRemark.PATH_STRESSES, {"columns": ", ".join(one.stresses)}))
+        if one.motion == "simple_shear":
+            found.append(Remark(ElementRemark.PATH_MOTION, {"file": one.name}))
         if zero:
             found.append(Remark(ElementRemark.PATH_ZERO, {"columns": zero}))
         if unused:
             found.append(Remark(ElementRemark.PATH_UNUSED, {"file": one.name, "columns": unused}))
     return found
+
+
+def path_ends(studies: Sequence[ElementStudy]) -> list[Remark]:
+    """Remarks on the stress at the end of each path from a file and motion, or on where it stops."""
+    found = []
+    for one in studies:
+        if one.test.source and one.failed:
+            found.append(Remark(ElementRemark.PATH_STOPPED, {"path": one.test.title, **stopped_at(one.failed)}))
+        elif one.curve and (one.test.source or one.test.motion):
+            sx, sy, sz, xy = (float(one.curve[name][-1]) for name in ("sx", "sy", "sz", "tau"))
+            found.append(Remark(ElementRemark.PATH_END, {"path": one.test.title, "xx": -sx, "yy": -sy, "zz": -sz,
+                                                         "xy": xy}))  # fmt: skip
+    return found
+
+
+def stopped_at(stopped: Stopped) -> dict[str, float | str]:
+    """Cause of an early end, what is left, and where."""
+    where = {"left": stopped.left, "step": stopped.step, "steps": stopped.steps, "line": stopped.line}
+    return {"cause": stopped.cause, **where}
 
 
 def lead(material: Any, studies: Sequence[ElementStudy], found: Sequence[Check]) -> list[Remark]:
@@ -134,8 +148,7 @@ def notes(material: Any, one: ElementStudy) -> list[Remark]:
     group, stopped = one.test.title, one.failed
     found = []
     if stopped:
-        where = {"left": stopped.left, "step": stopped.step, "steps": stopped.steps}
-        found.append(Remark(ElementRemark.FAILED, {"cause": stopped.cause, **where}, group))
+        found.append(Remark(ElementRemark.FAILED, stopped_at(stopped), group))
     if one.source:
         found.append(Remark(ElementRemark.AGAINST, {"source": one.source}, group))
     else:
@@ -146,6 +159,10 @@ def notes(material: Any, one: ElementStudy) -> list[Remark]:
         found.append(Remark(ElementRemark.NO_ORDER, {}, group))
     else:
         found.append(Remark(ElementRemark.ORDER, {"order": one.order}, group))
+    if one.test.motion and material.rate is not None:
+        found.append(Remark(ElementRemark.RATE_ACTS, {"rate": label(material.rate), "steps": one.steps[-1]}, group))
+    if one.test.axial and material.out_of_plane == "plane":
+        found.append(Remark(ElementRemark.PLANE_YIELDS, {}, group))
     outside = beyond(material, one)
     if outside is not None:
         code = ElementRemark.ZZ_OUTSIDE if outside else ElementRemark.ZZ_WITHIN
@@ -155,15 +172,17 @@ def notes(material: Any, one: ElementStudy) -> list[Remark]:
 
 def beyond(material: Any, one: ElementStudy) -> float | None:
     """Fraction of the finest run's steps in which zz leaves the plane's range; None of a material that sees zz."""
-    if material.name not in PLANE_ALONE or len(one.curve.get("s", ())) < 2:
+    if material.name not in PLANE_ALONE or one.test.axial or len(one.curve.get("s", ())) < 2:
         return None
     sigma = np.column_stack([-one.curve["sx"], -one.curve["sy"], -one.curve["sz"], one.curve["tau"]])
     return float(np.mean(PLANE_ALONE[material.name](sigma[1:])))
 
 
-def parameters(material: Any, stress: float, steps: int) -> dict[str, float | str]:
+def parameters(material: Any, stress: float, steps: int, start: str = "isotropic") -> dict[str, float | str]:
     """Parameters of the material and of the tests."""
     own: dict[str, float | str] = dict(asdict(material))
+    if start != "isotropic":
+        own["stress at the start"] = start
     return own | {
         "confining stress": 0.0 if material.energy is not None else stress,
         "steps of the coarsest run": steps,

@@ -18,7 +18,7 @@ from mpm_verify.solver.plugins import MATERIALS, create
 
 def test_of(run: ElementRun) -> ElementTest:
     """Test of a run. Raises ValueError for a file that does not hold a path."""
-    return from_file(Path(run.path), run.units) if run.test == PATH else TESTS[run.test]
+    return from_file(Path(run.path), run.units, run.motion) if run.test == PATH else TESTS[run.test]
 
 
 def execute(run: ElementRun, tick: Callable[[float], None] = lambda fraction: None) -> tuple[ElementResult, Arrays]:
@@ -32,7 +32,7 @@ def execute(run: ElementRun, tick: Callable[[float], None] = lambda fraction: No
         found = {"checks": tuple(material_checks(material))}
     else:
         test = test_of(run)
-        one = study(material, test, run.stress, run.steps)
+        one = study(material, test, run.stress, run.steps, run.start)
         found = {"source": one.source, "stopped": one.failed, "counts": one.steps, "step_errors": one.errors,
                  "read": test.source}  # fmt: skip
         arrays = {f"curve/{name}": values for name, values in one.curve.items()}

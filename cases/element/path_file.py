@@ -1,172 +1,178 @@
-"""A strain path from a CSV file, as an element test of which all strains are given.
+"""A path from a CSV file, as an element test: strains, stresses, both in turns, or a motion.
 
-The header names the columns exx, eyy, and exy (of the tensor) or gxy = 2 exy, in any order and case, tension positive;
-`exx [%]` or `exx_pct` is in per cent. How a file may look otherwise stands in cases/harness/sheet.py.
+Rows are corners, and the first is the start: its stresses are those at the start, and strains count from its own. The
+header names columns, in any order and case, tension positive:
+    exx, eyy, exy (of the tensor) or gxy = 2 exy    strains; `exx [%]` or `exx_pct` is in per cent
+    ezz                                             strain out of the plane; without it, and szz, plane strain
+    sxx, syy, sxy, szz                              stresses in place of strains, in the unit of E, or [kPa], [MPa]
+    Fxx, Fxy, Fyx, Fyy, Fzz                         a motion in place of strains; Fzz is 1 where it is left out
+Where a component has both columns, each row gives one of them and leaves the other cell empty. How a file may look
+otherwise stands in cases/harness/sheet.py.
 """
 
-import re
-from collections import Counter
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path as File
-from typing import Literal, get_args
+from typing import get_args
 
 import numpy as np
 
+from mpm_verify.cases.element.motion import UNIT
+from mpm_verify.cases.element.path_columns import (
+    COLUMNS,
+    COMPONENTS,
+    STRESSES,
+    Sheet,
+    Units,
+    check_units,
+    number,
+    read,
+    unused,
+    zero,
+)
 from mpm_verify.cases.element.paths import XX, XY, YY, ElementTest, PathSource
-from mpm_verify.cases.harness import sheet as written
 from mpm_verify.solver.state import Floats
 
-Units = Literal["percent", "fraction"]
-TAKEN = "exx, eyy, and exy or gxy = 2 exy"
 PLAUSIBLE, LARGEST = (
     0.5,
     10.0,
 )  # of a strain: beyond the first it may be a percentage, beyond the second it is not a strain
-UNITS = {
-    **dict.fromkeys(("%", "pct", "percent", "per cent", "per_cent"), "percent"),
-    **dict.fromkeys(("-", "1", "m/m", "mm/mm", "fraction"), "fraction"),
-    "": "",
-}
-UNIT = re.compile(r"(.*?)[\s_]*(?:[\[(<]\s*(.*?)\s*[\])>]|(?:in\s+|/\s*)?(%|pct|percent|per[ _]cent))")
-AXES = r"([xyz]{1,2}|[rtz]{2}|[123]{2})"
-STRAIN = re.compile(
-    rf"(d|log|ln|true|total)?[\s_]*(e|eps|epsilon|\u03b5|\u03f5|g|gam|gamma|\u03b3|strain)[\s_.]*{AXES}"
-)
-NO_PLANE = re.compile(r".*(z|3).?")  # the index of a strain that plane strain has not
 
 
-@dataclass(frozen=True)
-class Sheet:
-    """Sheet of columns by name and unit ("percent", "fraction", "" where none is said), and rows with their line."""
+def from_file(path: File, units: str = "", motion: str = "none") -> ElementTest:
+    """Path of a CSV file, see above; `units`, "percent" or "fraction", is that of all its strains.
 
-    path: File
-    names: tuple[str, ...]
-    units: tuple[str, ...]
-    rows: list[tuple[int, list[str]]]
-
-    def column(self, name: str, units: str) -> Floats:
-        """Strains (rows,) as fractions. Raises ValueError."""
-        at = self.names.index(name)
-        percent = (units or self.units[at]) == "percent"
-        known = bool(units or self.units[at])
-        return np.array([self.strain(line, name, cells[at], percent, known) for line, cells in self.rows])
-
-    def strain(self, line: int, name: str, cell: str, percent: bool, known: bool) -> float:
-        """Strain in a cell as a fraction; `known` says that its unit is stated. Raises ValueError for anything else."""
-        where = f"{self.path}, line {line}: {name}"
-        written = number(cell)
-        if not cell:
-            raise ValueError(f"{where} is empty; write a number in each row")
-        if written is None:
-            raise ValueError(f"{where} = {cell!r} must be a finite number")
-        percent, known = percent or cell.endswith("%"), known or cell.endswith("%")
-        value = written / (100.0 if percent else 1.0)
-        if abs(value) > PLAUSIBLE and not known:
-            meant = f"if it is meant as it is, --units fraction, up to {LARGEST:g}"
-            raise ValueError(f"{where} = {cell} is a large strain: in per cent? Then add --units percent; {meant}")
-        if not abs(value) <= LARGEST:
-            raise ValueError(f"{where} = {cell} is a strain of {value:g}; write strains up to {LARGEST:g}")
-        return value
-
-
-def from_file(path: File, units: str = "") -> ElementTest:
-    """Strain path of a CSV file, see above; `units`, "percent" or "fraction", is that of all its strains.
-
-    The first row is where it starts. Raises ValueError with one line for what cannot be a path.
+    With `motion` = "simple_shear" strains are a motion, F = [[1, gxy], [0, 1]] diag(exp exx, exp eyy). Raises
+    ValueError with one line for what cannot be a path.
     """
     if units not in ("", *get_args(Units)):
         raise ValueError(f"--units {units} must be one of {', '.join(get_args(Units))}")
     sheet = read(path)
-    shear = check_names(sheet)
-    check_units(sheet, ("exx", "eyy", shear), units)
+    check_units(sheet, units)
     if len(sheet.rows) < 2:
         raise ValueError(f"{path} must have two rows of strains at least")
-    table = np.stack([sheet.column(name, units) for name in ("exx", "eyy", shear)], axis=1)
-    table *= (1.0, 1.0, 0.5 if shear == "gxy" else 1.0)
-    if not np.ptp(table, axis=0).any():
-        raise ValueError(f"{path} must have strains that change")
-    sheared = bool(np.ptp(table[:, 2]) > np.ptp(table[:, :2], axis=0).max())
-    source = PathSource(path.name, ("exx", "eyy", shear), unused(sheet), zero(sheet), float(np.abs(table).max()))
+    points, targets = tables(sheet, units)
+    given = points[np.isfinite(points)]
+    source = PathSource(
+        path.name, tuple(map(shown, sheet.used)), unused(sheet), zero(sheet), float(np.abs(given).max(initial=0.0)),
+        tuple(line for line, _ in sheet.rows), tuple(name for name in sheet.used if name in COLUMNS["stress"]),
+        "F" if sheet.motion else "",
+    )  # fmt: skip
+    if motion == "simple_shear" and not sheet.motion:
+        if source.stresses:
+            raise ValueError(f"{path} has stresses; a motion with stresses must have columns Fxx, Fxy, Fyx, Fyy")
+        return moving(path, sheared(points), targets, source, "simple_shear")
+    if sheet.motion:
+        return moving(path, points, targets, source, "F")
+    if not source.stresses:
+        if not np.ptp(points, axis=0).any():
+            raise ValueError(f"{path} must have strains that change")
+        return strained(path, points, source)
+    points = points - np.where(np.isfinite(points[0]), points[0], 0.0)
+    return ElementTest("path", f"Path of {path.name}", (), 1.0, shear=shears(points), axial=points.shape[1] > 3,
+                       points=points, targets=targets, source=source)  # fmt: skip
+
+
+def shown(name: str) -> str:
+    """Name of a column as it is written: Fxx."""
+    return name.capitalize() if name in COLUMNS["F"] else name
+
+
+def strained(path: File, points: Floats, source: PathSource) -> ElementTest:
+    """Path of strains alone."""
+    flat = points.shape[1] == 3
     return ElementTest(
-        "path", f"Strain path of {path.name}", (XX, YY, XY), 1.0, shear=sheared, points=table, source=source
-    )
+        "path", f"Strain path of {path.name}", (XX, YY, XY) if flat else (), 1.0, shear=shears(points), axial=not flat,
+        points=points, source=source,
+    )  # fmt: skip
 
 
-def read(path: File) -> Sheet:
-    """Read the file as columns and rows, none of them ragged. Raises ValueError."""
-    found = written.read(path, f"a header with {TAKEN}, and rows below it")
-    names, units = zip(*map(named, found.header), strict=True)
-    return Sheet(path, names, units, found.rows)
+def moving(path: File, points: Floats, targets: Floats, source: PathSource, how: str) -> ElementTest:
+    """Path of F; what the first row does not give is undeformed."""
+    points, mixed = points.copy(), bool(source.stresses)
+    points[0] = np.where(np.isfinite(points[0]), points[0], UNIT)
+    for line, F in zip(source.lines, points, strict=True):
+        J = (F[0] * F[1] - F[2] * F[4]) * F[3]  # not a number where a stress is given in place of one
+        if J <= 0:
+            raise ValueError(f"{path}, line {line}: F has the determinant {J:.3g}; it must be above zero")
+    if not mixed and not np.ptp(points, axis=0).any():
+        raise ValueError(f"{path} must have a motion: F that changes")
+    return ElementTest(
+        "path", f"Motion of {path.name}", (), 1.0, shear=shears(points), motion=True, points=points,
+        targets=targets if mixed else np.zeros((0, 3)), source=replace(source, motion=how),
+    )  # fmt: skip
 
 
-def named(header: str) -> tuple[str, str]:
-    """Name and unit of a column, in lower case; the unit as UNITS has it, or as it is written."""
-    text = header.strip(written.BLANK).lower()
-    found = UNIT.fullmatch(text)
-    unit = "" if found is None else (found[3] if found[2] is None else found[2])
-    return text if found is None else found[1], UNITS.get(unit, unit)
+def shears(points: Floats) -> bool:
+    """Whether shear goes farther than the other components in the plane, where it is given; of F along x alone."""
+    apart = np.ptp(np.where(np.isfinite(points), points, points[0]), axis=0)
+    along_x = len(apart) < 5 or not (apart[4] or points[0, 4] or np.nanmin(points[:, :2]) <= 0)
+    return bool(along_x and apart[2] > np.nanmax(apart[:2], initial=0.0))
 
 
-def number(cell: str) -> float | None:
-    """Number in a cell, the sign of per cent left out; None where there is none."""
-    return written.number(cell.removesuffix("%"))
+def sheared(strains: Floats) -> Floats:
+    """Motion (R,5) of strains (R,3) or (R,4): stretched by exp exx and exp eyy, then sheared by 2 exy along x."""
+    xx, yy, xy, zz = np.column_stack([strains, np.zeros((len(strains), 4 - strains.shape[1]))]).T
+    motion: Floats = np.column_stack([np.exp(xx), np.exp(yy), 2 * xy * np.exp(yy), np.exp(zz), 0 * xx])
+    return motion
 
 
-def check_names(sheet: Sheet) -> str:
-    """Name of the shear column, exy or gxy. Raises ValueError unless the strains are there, once, and no others."""
-    path, names = sheet.path, sheet.names
-    if {"exy", "gxy"} <= set(names):
-        raise ValueError(f"{path} has both exy and gxy = 2 exy; leave one out")
-    shear = "gxy" if "gxy" in names else "exy"
-    if not {"exx", "eyy", shear} <= set(names):
-        raise ValueError(
-            f"{path} must have a header with {TAKEN}, and rows below it; its first line has {', '.join(names)[:60]}"
-        )
-    twice = [name for name, count in Counter(names).items() if count > 1 and name]
-    if twice:
-        raise ValueError(f"{path} has two columns {twice[0]}; leave one out")
-    strange = [name for name in names if STRAIN.fullmatch(name) and name not in ("exx", "eyy", shear)]
-    for name in strange:
-        if name not in zero(sheet):
-            raise ValueError(
-                f"{path}: the strain {name} would not be used: taken are {TAKEN}; plane strain has ezz = 0, and no "
-                f"strain out of the plane; leave the column out, or rename it if it is not a strain"
-            )
-    return shear
+def tables(sheet: Sheet, units: str) -> tuple[Floats, Floats]:
+    """Strains or F (R,n) and stresses (R,n) of the rows, not a number where a row gives the other one."""
+    count = 5 if sheet.motion else (4 if {"ezz", "szz"} & set(sheet.used) else 3)
+    points, targets = np.full((2, len(sheet.rows), count), np.nan)
+    for name in sheet.used:
+        kind = "stress" if name in COLUMNS["stress"] else sheet.kind
+        at = COMPONENTS.index(COLUMNS[kind][name])
+        (targets if kind == "stress" else points)[:, at] = column(sheet, name, kind, units)
+    if sheet.motion and not {"fzz", "szz"} & set(sheet.used):
+        points[:, 3] = 1.0
+    if count == 4 and not {"ezz", "szz"} & set(sheet.used):
+        points[:, 3] = 0.0
+    check_rows(sheet, points, targets)
+    return points, targets
 
 
-def check_units(sheet: Sheet, used: tuple[str, ...], units: str) -> None:
-    """Raise ValueError for a unit that is not known, that contradicts --units, or that only some strains have."""
-    said = {name: unit for name, unit in zip(sheet.names, sheet.units, strict=True) if name in used}
-    for name, unit in said.items():
-        if unit not in ("", *get_args(Units)):
-            raise ValueError(f"{sheet.path}: {name} is in {unit}; strains are taken in [%] or as fractions [-]")
-        if units and unit not in ("", units):
-            raise ValueError(f"{sheet.path}: {name} is in {unit} by its header, not in {units}; leave --units out")
-    if "percent" in said.values() and "" in said.values() and not units:
-        bare = next(name for name, unit in said.items() if not unit)
-        raise ValueError(
-            f"{sheet.path}: other strains are in per cent, and {bare} has no unit; write {bare} [%] or [-]"
-        )
+def check_rows(sheet: Sheet, points: Floats, targets: Floats) -> None:
+    """Raise ValueError where a row gives neither or both of a component; the first one may give both, or neither."""
+    for row, (line, _) in enumerate(sheet.rows):
+        for at in range(points.shape[1]):
+            axes = COMPONENTS[at]
+            strain, stress = (next((n for n in sheet.used if COLUMNS[kind].get(n) == axes), "")
+                              for kind in (sheet.kind, "stress"))  # fmt: skip
+            both = np.isfinite([points[row, at], targets[row, at]])
+            if row and both.all():
+                raise ValueError(f"{sheet.path}, line {line} gives both {strain} and {stress}; leave one of them empty")
+            if not both.any() and (row or not (strain and stress)):
+                other = f" or in {stress}" if strain and stress else " in each row"
+                raise ValueError(f"{sheet.path}, line {line}: {strain or stress} is empty; write a number{other}")
 
 
-def zero(sheet: Sheet) -> tuple[str, ...]:
-    """Strains out of the plane that are zero in every row: they say what plane strain says."""
-    out = []
-    for at, name in enumerate(sheet.names):
-        found = STRAIN.fullmatch(name)
-        if found and NO_PLANE.fullmatch(found[3]) and all(number(cells[at]) == 0 for _, cells in sheet.rows):
-            out.append(name)
-    return tuple(out)
+def column(sheet: Sheet, name: str, kind: str, units: str) -> Floats:
+    """Values (R,) of a column as fractions, or in the unit of E; not a number in empty cells. Raises ValueError."""
+    at = sheet.names.index(name)
+    unit = sheet.units[at]
+    values = []
+    for line, cells in sheet.rows:
+        where, cell = f"{sheet.path}, line {line}: {name}", cells[at]
+        written = number(cell)
+        if cell and (written is None or (kind != "strain" and cell.endswith("%"))):
+            raise ValueError(f"{where} = {cell!r} must be a finite number")
+        if written is None:
+            values.append(np.nan)
+        elif kind == "strain":
+            values.append(strain(where, cell, written, units or unit) * (0.5 if name == "gxy" else 1.0))
+        else:
+            values.append(written * (STRESSES[unit.lower()] if kind == "stress" else 1.0))
+    return np.array(values)
 
 
-def unused(sheet: Sheet) -> tuple[str, ...]:
-    """Columns that are not strains, by name or number; one without name and content is nobody's."""
-    kept = []
-    for at, name in enumerate(sheet.names):
-        if name not in ("exx", "eyy", "exy", "gxy") and not STRAIN.fullmatch(name):
-            if name:
-                kept.append(name)
-            elif any(cells[at] for _, cells in sheet.rows):
-                kept.append(f"column {at + 1} without a name")
-    return tuple(kept)
+def strain(where: str, cell: str, written: float, unit: str) -> float:
+    """Strain in a cell as a fraction. Raises ValueError for one that may be a percentage, or is none."""
+    percent, known = unit == "percent" or cell.endswith("%"), bool(unit) or cell.endswith("%")
+    value = written / (100.0 if percent else 1.0)
+    if abs(value) > PLAUSIBLE and not known:
+        meant = f"if it is meant as it is, --units fraction, up to {LARGEST:g}"
+        raise ValueError(f"{where} = {cell} is a large strain: in per cent? Then add --units percent; {meant}")
+    if not abs(value) <= LARGEST:
+        raise ValueError(f"{where} = {cell} is a strain of {value:g}; write strains up to {LARGEST:g}")
+    return value

@@ -1,17 +1,15 @@
-"""Element tests as data: three conditions on strains and stresses each, and how far the test goes.
+"""Element tests as data: conditions on strains and stresses, three in plane strain and four with zz, and a length.
 
-A strain condition gives the increment of a combination of xx, yy, xy (tensor), a stress condition holds one where it
-was. Compression is along y. A strain path of one's own comes from a CSV file (path_file.py).
+A strain condition gives the increment of a combination of xx, yy, xy (tensor) and zz, a stress condition holds one
+where it was. Compression is along y. A path of one's own comes from a CSV file (path_file.py, legs.py); a motion is a
+path of F (motion.py). How they are followed stands in following.py.
 """
 
-from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
 
-from mpm_verify.cases.element.element import Element, ElementFailed, ElementFailure, State
 from mpm_verify.solver.state import Floats
 
 CYCLES = 3
@@ -19,34 +17,35 @@ CYCLES = 3
 
 @dataclass(frozen=True)
 class Condition:
-    """Condition on a combination with `weights` of xx, yy, xy.
+    """Condition on a combination with `weights` of xx, yy, xy, and of zz in a test that strains it.
 
     Of the strain, which goes through `fraction` of the length of the path; or of the stress, which stays.
     """
 
     of: Literal["strain", "stress"]
-    weights: tuple[float, float, float]
+    weights: tuple[float, ...]
     fraction: float = 0.0
 
 
 XX, YY, XY = (Condition("strain", w) for w in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)))
 
 
-def given(weights: tuple[float, float, float], fraction: float) -> Condition:
+def given(weights: tuple[float, ...], fraction: float) -> Condition:
     """Condition that gives a strain."""
     return Condition("strain", weights, fraction)
 
 
 def held(*weights: float) -> Condition:
     """Condition that holds a stress."""
-    return Condition("stress", (weights[0], weights[1], weights[2]))
+    return Condition("stress", weights)
 
 
 @dataclass(frozen=True)
 class PathSource:
     """Content of the file of a path: columns that are `used`, and those that are not strains.
 
-    Strains out of the plane are `zero` in every row; `largest` is the largest strain component.
+    Strains out of the plane are `zero` in every row; `largest` is the largest strain component. `lines` are those of
+    the rows, `stresses` the columns that control a stress, `motion` the word for how F came about, if it did.
     """
 
     name: str
@@ -54,6 +53,9 @@ class PathSource:
     unused: tuple[str, ...] = ()
     zero: tuple[str, ...] = ()
     largest: float = 0.0
+    lines: tuple[int, ...] = ()
+    stresses: tuple[str, ...] = ()
+    motion: str = ""
 
 
 @dataclass(frozen=True)
@@ -61,19 +63,34 @@ class ElementTest:
     """Element test, with the `length` of its path in strain.
 
     `shear`: its curves are of xy; `closed`: the volume is kept; `cyclic`: to either side CYCLES times and back to the
-    middle; `loose`: it starts at this fraction of the stress.
+    middle; `loose`: it starts at this fraction of the stress; `axial`: lateral stresses or strains are equal, so that q
+    is drawn; `motion`: its points are F: xx, yy, xy, zz, yx. Of a path from a file `points` are the strains at the
+    corners (R,n), and `targets` the stresses (R,n), each not a number where it is not given.
     """
 
     name: str
     title: str
-    conditions: tuple[Condition, Condition, Condition]
+    conditions: tuple[Condition, ...]
     length: float
     shear: bool = False
     closed: bool = False
     cyclic: bool = False
     loose: float = 1.0
-    points: Floats = field(default_factory=lambda: np.zeros((0, 3)), compare=False)  # of a path from a file
+    axial: bool = False
+    motion: bool = False
+    points: Floats = field(default_factory=lambda: np.zeros((0, 3)), compare=False)
+    targets: Floats = field(default_factory=lambda: np.zeros((0, 3)), compare=False)
     source: PathSource | None = field(default=None, compare=False)
+
+    @property
+    def size(self) -> int:
+        """Number of its components of strain: 3 in plane strain, 4 with zz, 5 of a motion."""
+        return self.points.shape[1] if len(self.points) else len(self.conditions)
+
+    @property
+    def mixed(self) -> bool:
+        """Whether stresses are given in a path from a file."""
+        return len(self.targets) > 0
 
     @property
     def legs(self) -> int:
@@ -94,6 +111,7 @@ class ElementTest:
         return there
 
 
+CELL = (held(1, 0, 0, 0), held(0, 0, 0, 1), given((0, 0, 1, 0), 0))  # the pressure of a triaxial cell stays
 TESTS = {
     test.name: test
     for test in (
@@ -121,98 +139,18 @@ TESTS = {
             "cyclic_shear", "Cyclic simple shear at constant vertical stress",
             (XX, held(0, 1, 0), given((0, 0, 1), 0.5)), 0.02, shear=True, cyclic=True,
         ),
+        ElementTest("triaxial_compression", "Drained triaxial compression", (*CELL, given((0, 1, 0, 0), -1)), 0.05,
+                    axial=True),
+        ElementTest("triaxial_extension", "Drained triaxial extension", (*CELL, given((0, 1, 0, 0), 1)), 0.025,
+                    axial=True),
+        ElementTest(
+            "triaxial_undrained", "Undrained triaxial compression",
+            (given((1, 0, 0, 0), 0.5), given((0, 0, 0, 1), 0.5), given((0, 1, 0, 0), -1), given((0, 0, 1, 0), 0)), 0.02,
+            closed=True, axial=True,
+        ),
+        ElementTest(
+            "finite_shear", "Simple shear of F to 5", (), 5.0, shear=True, closed=True, motion=True,
+            points=np.array([[1.0, 1.0, 0.0, 1.0, 0.0], [1.0, 1.0, 5.0, 1.0, 0.0]]),
+        ),
     )
 }  # fmt: skip
-
-
-@dataclass(frozen=True)
-class Stopped:
-    """Early end of a test: why, what was left of the residual, and at which of how many steps."""
-
-    cause: ElementFailure
-    left: float
-    step: int
-    steps: int
-
-
-@dataclass(frozen=True)
-class Followed:
-    """Path of a test: strain (N+1,3), sigma (N+1,4), history (N+1,H); `failed` where it ends before the last step."""
-
-    strain: Floats
-    sigma: Floats
-    history: Floats
-    failed: Stopped | None = None
-
-
-def follow(element: Element, test: ElementTest, steps: int, start: Floats) -> Followed:
-    """Follow the test in equal steps from the stress `start` (4,); what cannot go on ends there and says why."""
-    states, failed = [element.start(start)], None
-    size, before = scale_of(element, states[0]), np.zeros(3)
-    free = any(condition.of == "stress" for condition in test.conditions)
-    for number, move in enumerate(moves(test, steps), 1):
-        last = states[-1]
-        try:
-            if free:
-                end = solved(element, test, last, move, before, size)
-                before = end.strain - last.strain
-            else:
-                end = finite(element.step(last, move[None])[0])
-            states.append(end)
-        except ElementFailed as error:
-            failed = Stopped(error.cause, error.left, number, steps)
-            break
-    strain, sigma, history = (np.array([getattr(s, name) for s in states]) for name in ("strain", "sigma", "history"))
-    return Followed(strain, sigma, history, failed)
-
-
-def solved(element: Element, test: ElementTest, last: State, move: Floats, before: Floats, size: float) -> State:
-    """Solve for the next state: from the last increment, or from what is given alone. Raises ElementFailed."""
-    residuals, sizes = control(test, last, move), scales(test, move, size)
-    if before @ move > 0:
-        with suppress(ElementFailed):
-            return element.solve(last, residuals, before, sizes)
-    return element.solve(last, residuals, move, sizes)
-
-
-def scale_of(element: Element, state: State) -> float:
-    """Scale of stress: that at the start, or what a small strain makes of nothing."""
-    probe = element.step(state, np.array([[-1e-3, -2e-3, 0.0]]))[0]
-    return float(max(np.abs(state.sigma).max(), np.abs(probe.sigma).max()))
-
-
-def moves(test: ElementTest, steps: int) -> Floats:
-    """Strain increments (steps,3) as far as they are given: least squares of the conditions on strains."""
-    if len(test.points):
-        line = np.linspace(0, test.legs, steps + 1)
-        return np.diff([np.interp(line, np.arange(test.legs + 1), column) for column in test.points.T], axis=1).T
-    strains = [condition for condition in test.conditions if condition.of == "strain"]
-    weights = np.array([condition.weights for condition in strains])
-    unit = np.linalg.lstsq(weights, np.array([condition.fraction for condition in strains]), rcond=None)[0]
-    increments: Floats = np.diff(test.gone(steps))[:, None] * unit
-    return increments
-
-
-def control(test: ElementTest, before: State, move: Floats) -> Callable[[Floats, State], Floats]:
-    """Residuals of one step, as a function of its strain increment and of the state at its end."""
-    weights = np.array([condition.weights for condition in test.conditions])
-    strains = np.array([condition.of == "strain" for condition in test.conditions])
-    wanted = weights @ move
-
-    def residuals(de: Floats, end: State) -> Floats:
-        stress = weights @ (end.sigma - before.sigma)[[0, 1, 3]]
-        return np.where(strains, weights @ de - wanted, stress)
-
-    return residuals
-
-
-def scales(test: ElementTest, move: Floats, size: float) -> Floats:
-    """Scales of the residuals (3,)."""
-    return np.array([np.abs(move).max() if condition.of == "strain" else size for condition in test.conditions])
-
-
-def finite(state: State) -> State:
-    """Give the state back; ElementFailed where its stress is not finite."""
-    if not np.isfinite(state.sigma).all():
-        raise ElementFailed(ElementFailure.NOT_FINITE)
-    return state

@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 
 from mpm_verify.cases.element.axes import AXES, CONFINED, PATH, PROPERTIES, ElementRun
-from mpm_verify.cases.element.paths import PathSource, Stopped
+from mpm_verify.cases.element.following import Stopped
+from mpm_verify.cases.element.paths import PathSource
 from mpm_verify.cases.harness.checks import Check
 from mpm_verify.cases.harness.study import ResultRecord
 

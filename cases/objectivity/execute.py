@@ -13,8 +13,8 @@ from mpm_verify.cases.harness.study import Arrays, ResultRecord, parameters
 from mpm_verify.cases.objectivity import rates as kinematic
 from mpm_verify.cases.objectivity.axes import BLOCK, Block
 from mpm_verify.cases.objectivity.block import numbers
-from mpm_verify.cases.objectivity.exact import SIMPLE_SHEAR
 from mpm_verify.cases.objectivity.turning_block import execute as turn
+from mpm_verify.mms.constitutive.simple_shear import SIMPLE_SHEAR
 from mpm_verify.solver.failure import Failure
 from mpm_verify.solver.plugins import NEGATIVE_CONTROLS, RATES, available
 

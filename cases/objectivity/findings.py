@@ -12,8 +12,8 @@ from mpm_verify.cases.harness.checks import Check, Remark
 from mpm_verify.cases.harness.study import ResultRecord
 from mpm_verify.cases.objectivity import block as full
 from mpm_verify.cases.objectivity.axes import KINEMATIC, Block
-from mpm_verify.cases.objectivity.exact import SIMPLE_SHEAR
 from mpm_verify.cases.objectivity.rates import CONTROLS, ORDERS, SHEAR
+from mpm_verify.mms.constitutive.simple_shear import SIMPLE_SHEAR
 from mpm_verify.solver.plugins import NEGATIVE_CONTROLS, RATES, available
 
 INERTIA = "Inertial fraction"

@@ -7,8 +7,9 @@ import numpy as np
 
 from mpm_verify.cases.harness.checks import Check
 from mpm_verify.cases.objectivity.axes import Block
-from mpm_verify.cases.objectivity.exact import SIMPLE_SHEAR, compressed, rotated
+from mpm_verify.cases.objectivity.exact import compressed, rotated
 from mpm_verify.cases.objectivity.kinematic import follow, sheared, squeezed_then_turned, stretched_turn
+from mpm_verify.mms.constitutive.simple_shear import SIMPLE_SHEAR
 from mpm_verify.solver.material.hypoelastic import Hypoelastic
 from mpm_verify.solver.plugins import RATES, available
 from mpm_verify.solver.rate_material import objective

@@ -120,12 +120,18 @@ def cut_off(subject: Subject) -> Tested:
     name, material = "cut_off", subject.material
     if material.friction_angle is None:
         return not_asked(name, Part.CUT_OFF, Reason.NO_FRICTION)
-    apex = (material.cohesion or 0.0) / tan(radians(material.friction_angle))
+    apex = (material.cohesion or 0.0) / tan(radians(material.friction_angle)) if material.friction_angle else inf
     tension = min(apex, getattr(material, "sigma_t", inf))
     if material.moduli is not None:
         tension = 0.0  # what has come apart has no stress
+    if tension == inf:
+        return not_asked(name, Part.CUT_OFF, Reason.NO_CUT_OFF)
     start = confined(subject)
-    size = 20 * (CONFINED * subject.stress + apex) / subject.stiffness(CONFINED * subject.stress)
+    size = (
+        20
+        * (CONFINED * subject.stress + (apex if apex < inf else tension))
+        / subject.stiffness(CONFINED * subject.stress)
+    )
     D = symmetric(size * np.array([1.0, 1.1, 0.1]) * np.ones((POINTS, 1)))
     point = drive(material, [np.broadcast_to(np.eye(2), D.shape).copy(), straight(D)], start)
     unit = CONFINED * subject.stress + tension

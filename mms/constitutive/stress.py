@@ -82,6 +82,8 @@ def confined(subject: Subject, ratio: float = 0.5) -> Floats:
     """Stresses (P,4) in compression, t/s below strength by `ratio`, in axes of any direction."""
     mean, material = CONFINED * subject.stress, subject.material
     most = strength(material)[0] if material.friction_angle else 0.5
+    if material.friction_angle == 0:
+        most = min(most, strength(material)[1] / mean)
     angle = 3 * random(POINTS, seed=7)
     t = ratio * most * mean
     normal = t * np.cos(angle)

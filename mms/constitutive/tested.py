@@ -60,6 +60,7 @@ class Reason(StrEnum):
     NO_MODULI = "no_moduli"  # the material does not state them
     STRETCHED = "stretched"  # the rate carries the stress by the stretch too
     NO_FRICTION = "no_friction"
+    NO_CUT_OFF = "no_cut_off"  # neither an apex nor a tension cut-off
     IN_SPACE = "in_space"  # a yield surface of all three principal stresses
     OPENED = "opened"  # strain that opens and closes voids is neither elastic nor plastic
     NO_SUMS = "no_sums"  # no memory that is a sum

@@ -1,6 +1,6 @@
 """Page of a study that consists of Examinations: one after the other, with their names where there are several."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,16 +11,24 @@ from mpm_verify.reports.components.page import Add
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences.remarks import leads
 
+Overview = Callable[[Mapping[str, Examination], Add], Sequence[Section]]
 
-def page(record: Record, sections: Sections, kinds: Sequence[str] = ("svg", "pdf", "png")) -> Path:
-    """Write the page of `record.analysis.more.examinations`; its path. Raises StoreError."""
+
+def page(
+    record: Record,
+    sections: Sections,
+    kinds: Sequence[str] = ("svg", "pdf", "png"),
+    overview: Overview = lambda found, add: (),
+) -> Path:
+    """Write the page of `record.analysis.more.examinations`, `overview` of all first; its path. Raises StoreError."""
     found: Mapping[str, Examination] = record.analysis.more.examinations
     if not found:
         raise StoreError(f"{record.store.folder} holds no part that can be drawn: run its study to the end")
-    return render(
-        record.store.folder, whole(record, found), lambda _, add: every(found, sections, add), kinds,
-        said=" ".join(leads(found)),
-    )  # fmt: skip
+
+    def drawn(_: Examination, add: Add) -> Sequence[Section]:
+        return [*overview(found, add), *every(found, sections, add)]
+
+    return render(record.store.folder, whole(record, found), drawn, kinds, said=" ".join(leads(found)))
 
 
 def whole(record: Record, found: Mapping[str, Examination]) -> Examination:

@@ -38,7 +38,8 @@ def stress(
     limit: float | None = None,
 ) -> Figure:
     """Stress against a strain; `marks` are of a reference table, `limit` is the stress that it comes to."""
-    labels = {"t": "radius t", "tau": "shear stress τ", "sy": "vertical stress, compression positive"}
+    labels = {"t": "radius t", "tau": "shear stress τ", "sy": "vertical stress, compression positive",
+              "q": "deviator stress q = σ_y − σ_x"}  # fmt: skip
     with rc_context(style.RC):
         figure, axes = _panel(_strain(x, y), labels[y])
         if limit is not None:
@@ -54,6 +55,22 @@ def volume(curve: Curve, exact: Curve | None, x: str, shear: bool, marks: Sequen
         figure, axes = _panel(_strain(x, "tau" if shear else ""), "volume strain, contraction positive")
         _both(axes, curve, exact, x, "ev")
         _marks(axes, marks)
+    return figure
+
+
+def rates(own: Mapping[str, Curve], exact: Mapping[str, Curve]) -> Figure:
+    """Shear stress xy and normal stress xx over G against the shear, a line for each rate over its closed form."""
+    with rc_context(style.RC):
+        figure = Figure(figsize=(9.2, 4.4), layout="constrained")
+        for axes, of, label in zip(figure.subplots(1, 2), ("xy", "xx"), ("σ_xy / G", "σ_xx / G"), strict=True):
+            axes.set(xlabel="shear γ", ylabel=label)
+            for number, (name, curve) in enumerate(own.items()):
+                axes.plot(exact[name]["gamma"], exact[name][of], color=EXACT, linewidth=6.5, zorder=1)
+                axes.plot(curve["gamma"], curve[of], color=style.COLOURS[number % 8], linewidth=1.6, zorder=2,
+                          label=name.replace("_", " ") if of == "xy" else None)  # fmt: skip
+            low = min(float(np.min(curve[of])) for curve in own.values())
+            axes.set_ylim(min(low, 0.0) - 0.3, 8.0 if of == "xx" else None)
+        figure.legend(loc="outside lower center", ncols=4, fontsize=9.5)
     return figure
 
 

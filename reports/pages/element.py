@@ -1,6 +1,6 @@
 """Page of `verify material`: each element test with its curves, then the errors, then the material's own checks."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -14,11 +14,67 @@ from mpm_verify.reports.figures import element as draw
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences.remarks import notes
 from mpm_verify.reports.words import order, sci
+from mpm_verify.solver.state import Floats
+
+SHEAR = "finite_shear"
 
 
 def page(record: Record, vtk: bool = False) -> Path:
     """Write the page; its path. There are no snapshots, whatever `vtk` says. Raises StoreError."""
-    return examined_page(record, sections, ("svg", "pdf"))  # some two dozen figures: PNG takes half the time
+    kinds = ("svg", "pdf")  # some two dozen figures: PNG takes half the time
+    return examined_page(record, sections, kinds, sheared)
+
+
+def sheared(found: Mapping[str, Examination], add: Add) -> Sequence[Section]:
+    """Section of simple shear of F by several rates, each over its closed form; none where there is one at most."""
+    rates = {str(one.parameters["rate"]): one for one in found.values() if f"exact/{SHEAR}" in one.curves}
+    if len(rates) < 2:
+        return []
+    own = {rate: rates_of(one, f"test/{SHEAR}") for rate, one in rates.items()}
+    exact = {rate: rates_of(one, f"exact/{SHEAR}") for rate, one in rates.items()}
+    words = [
+        "The shear γ is that of F = [[1, γ], [0, 1]], from zero stress, and G the shear modulus: the objective rate of "
+        "the stress is 2 G D. All rates agree in small strain; at γ = 5 they do not: the rate is part of the model. "
+        "The number of steps decides how well a rate is integrated, with order 2; Truesdell's is exact in any number."
+    ]
+    alt = "Shear and normal stress over G against the shear, four rates, over their closed forms."
+    image = add("rates", draw.rates(own, exact), alt)
+    caption = "Lines: computed, the finest run; broad: closed forms. Left the shear stress, right the normal stress xx."
+    return [Section("rates", "Objective rates in simple shear", words, [(image, caption)],
+                    [shear_table(own, exact), error_table(rates)], wide=True)]  # fmt: skip
+
+
+def rates_of(one: Examination, name: str) -> dict[str, Floats]:
+    """Columns gamma, and xy and xx over G less what they begin with."""
+    curve, G = one.curves[name], float(one.parameters["E"]) / (2 * (1 + float(one.parameters["nu"])))
+    return {
+        "gamma": curve["gamma"],
+        "xy": (curve["tau"] - curve["tau"][0]) / G,
+        "xx": (curve["sx"][0] - curve["sx"]) / G,
+    }
+
+
+def shear_table(own: Mapping[str, dict[str, Floats]], exact: Mapping[str, dict[str, Floats]]) -> Table:
+    """Table of stresses over G at whole shears: computed, and by the closed form."""
+    rows: list[tuple[str, ...]] = []
+    for rate, curve in own.items():
+        for gamma in range(1, int(curve["gamma"].max()) + 1):
+            at = [float(np.interp(gamma, c["gamma"], c[of])) for of in ("xy", "xx") for c in (curve, exact[rate])]
+            rows.append((rate.replace("_", " "), str(gamma), *(f"{value:.6f}" for value in at)))
+    head = ("rate", "γ", "σxy/G", "closed form", "σxx/G", "closed form")
+    return Table("Stresses at whole shears, finest run", head, tuple(rows))
+
+
+def error_table(rates: Mapping[str, Examination]) -> Table:
+    """Table of errors by number of steps, and orders."""
+    errors = {rate: one.curves[f"errors/{SHEAR}"] for rate, one in rates.items()}
+    counts = next(iter(errors.values()))["steps"]
+    rows = tuple(
+        (rate.replace("_", " "), *map(sci, map(float, curve["error"])), order(float(curve["order"][0])))
+        for rate, curve in errors.items()
+    )
+    head = ("rate", *(f"{n:g} steps" for n in counts), "order")
+    return Table("Error at the end, over the largest stress", head, rows)
 
 
 def sections(examination: Examination, add: Add) -> Sequence[Section]:
@@ -51,8 +107,11 @@ def test(examination: Examination, name: str, title: str, add: Add) -> Section:
     curve, exact = curves[f"test/{name}"], curves.get(f"exact/{name}")
     shear, strength = bool(curves[f"kind/{name}"]["shear"][0]), curves.get("strength")
     line = (float(strength["a"][0]), float(strength["b"][0])) if strength else None
+    axial = "q" in curve and not shear
     x = "gamma" if shear or np.ptp(curve["gamma"]) > 0.5 * np.ptp(curve["ey"]) else "ey"
     y = "tau" if shear else "t" if x == "gamma" else "sy"
+    if axial:
+        x, y = "ey", "q"
     marks: Curves = {key: curves[f"{key}/{name}"] for key in ("marks",) if f"{key}/{name}" in curves}
     points = (
         {key: list(zip(marks["marks"]["gamma"], marks["marks"][key], strict=True)) for key in ("t", "ev")}

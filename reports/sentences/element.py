@@ -34,9 +34,15 @@ def failed(n: Numbers) -> str:
     """Sentence on why and where a test ends early."""
     why = {
         ElementFailure.NOT_FINITE: "a stress is not finite",
-        ElementFailure.NO_STRAIN: f"no strain leads to what is asked, {n['left']:.1e} of the stress is left",
+        ElementFailure.NO_STRAIN: (
+            f"no strain leads to what is asked, {n['left']:.1e} of the stress is left; a stress beyond the strength "
+            "cannot be reached"
+            if n.get("line")
+            else f"no strain leads to what is asked, {n['left']:.1e} of the stress is left"
+        ),
     }[n["cause"]]
-    return f"It failed at step {n['step']:g} of {n['steps']:g}: {why}."
+    leg = f", on the way to line {n['line']:g} of the file" if n.get("line") else ""
+    return f"It failed at step {n['step']:g} of {n['steps']:g}{leg}: {why}."
 
 
 def outside(n: Numbers) -> str:
@@ -44,6 +50,17 @@ def outside(n: Numbers) -> str:
     return (
         f"zz is outside the range of the principal stresses in the plane in {100 * n['fraction']:.3g} % of the steps: "
         "there the largest shear is on other planes, which this material does not look at."
+    )
+
+
+def path_read(n: Numbers) -> str:
+    """Sentence on the columns that are read, and how far they go."""
+    if n.get("motion") == "F":
+        return f"{n['used']} are read of {n['file']}; the largest component of F is {n['largest']:.3g}."
+    if not n["largest"]:
+        return f"{n['used']} are read of {n['file']}."
+    return (
+        f"{n['used']} are read of {n['file']}; the largest strain is {n['largest']:.3g} ({100 * n['largest']:.3g} %)."
     )
 
 
@@ -60,8 +77,24 @@ REMARKS: dict[str, Words] = {
         f"rate={n['rate']} changes nothing here: along a path of strains the material works in its own frame, and "
         "nothing turns; verify objectivity tells the rates apart."
     ),
-    Code.PATH_READ: lambda n: (
-        f"{n['used']} are read of {n['file']}; the largest strain is {n['largest']:.3g} ({100 * n['largest']:.3g} %)."
+    Code.RATE_ACTS: lambda n: (
+        f"F turns the element: the stress is that of rate={n['rate']}, by {n['steps']:g} steps in the finest run. The "
+        "error of a step grows with its rotation and stretch, so the number of steps matters."
+    ),
+    Code.PATH_READ: path_read,
+    Code.PATH_END: lambda n: (
+        f"Stress at the end of {n['path']}: xx {n['xx']:.5g}, yy {n['yy']:.5g}, zz {n['zz']:.5g}, xy {n['xy']:.5g}."
+    ),
+    Code.PATH_STOPPED: lambda n: f"{n['path']}: {failed(n)}",
+    Code.PATH_STRESSES: lambda n: (
+        f"{n['columns']} control the stress: strains are found by Newton's method, to 1e-10 of the stress or better."
+    ),
+    Code.PATH_MOTION: lambda n: (
+        f"The strains of {n['file']} are read as a motion, F = [[1, gxy], [0, 1]] diag(exp exx, exp eyy), since a rate "
+        "acts on what turns; --motion none keeps them in the material's own axes, where all rates are one."
+    ),
+    Code.PLANE_YIELDS: lambda n: (
+        "This material yields in the plane of xx and yy alone: the lateral strain of zz is elastic, and not that of xx."
     ),
     Code.PATH_ZERO: lambda n: f"{n['columns']}: zero in every row, as in plane strain, which is what is computed.",
     Code.PATH_UNUSED: lambda n: f"Not used of {n['file']}: {n['columns']}.",

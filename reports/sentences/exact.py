@@ -115,6 +115,7 @@ REASONS = {
     Reason.NO_MODULI: "the material states no moduli",
     Reason.STRETCHED: "the rate carries the stress by the stretch too",
     Reason.NO_FRICTION: "the material has no friction",
+    Reason.NO_CUT_OFF: "the material takes any tension",
     Reason.IN_SPACE: "the yield surface is one of all three principal stresses",
     Reason.OPENED: "strain that opens and closes voids is neither elastic nor plastic",
     Reason.NO_SUMS: "the material keeps no such sum, or its moduli change on the way",

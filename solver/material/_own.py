@@ -62,6 +62,14 @@ def in_rate_form(material: Any, path: Path) -> None:
     below(material, RateMaterial, path)
     arguments(material, RateMaterial, path)
     kernel(material, "respond", path, RESPOND, "RESPOND")
+    if material.out_of_plane not in ("", "trial", "plane"):
+        raise OwnFileError(f'{path}: out_of_plane = {shown(material.out_of_plane)} must be "trial", "plane" or ""')
+    needs = {"trial": ("lam", "mu"), "plane": ("moduli",)}.get(material.out_of_plane, ())
+    lacking = [name for name in needs if getattr(material, name, None) is None]
+    if lacking:
+        raise OwnFileError(
+            f'{path}: out_of_plane = "{material.out_of_plane}" needs {lacking[0]}; see docs/own-plugin.md'
+        )
     constants = guarded(path, material.constants)
     if not isinstance(constants, np.ndarray) or constants.dtype != np.float64 or constants.ndim != 1:
         raise OwnFileError(f"{path}: constants gives {shown(constants)}; it must give np.array([...]) of numbers")

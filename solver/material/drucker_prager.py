@@ -12,18 +12,21 @@ compression: the edge s1 = s2, a = 6 sin phi / (sqrt(3) (3 - sin phi)), d alike 
     2008, chapter 6). In plane strain it is stronger than Mohr-Coulomb.
 
 The return is radial or to the apex (chapter 8 there); with psi = 0 the latter is a projection, as in mohr_coulomb.
+
+With phi = 0 it is von Mises' material: sqrt(J2) <= c (plane_strain: t <= c where plane strain fails) or 2 c / sqrt(3)
+(compression: s1 - s3 <= 2 c there). There is no apex, and nothing dilates.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import radians, sin, sqrt, tan
-from typing import ClassVar
+from math import radians, sin, sqrt
+from typing import ClassVar, Literal
 
 import numpy as np
 
 from mpm_verify.solver._jit import kernel
 from mpm_verify.solver.elastic import Elastic
-from mpm_verify.solver.material.mohr_coulomb import check_strength
+from mpm_verify.solver.material.mohr_coulomb import apex_of, check_strength, undilated
 from mpm_verify.solver.objective import RESPOND
 from mpm_verify.solver.principal import in_order, in_plane
 from mpm_verify.solver.rate_material import RateMaterial
@@ -53,7 +56,7 @@ def respond(constants, sigma, de, history):
             step = excess * constants[4]
             finite = 0.0 * (xx + yy + zz + xy)  # the apex is finite whatever comes in: a state that is NaN stays so
             scale, mean = finite, constants[6] + finite
-            if step < root:
+            if step < root or slope == 0.0:  # a cone of no slope has no apex
                 scale, mean = 1.0 - step / root, p - step * constants[5]
             opens = constants[8] > 0.0 and not step < root
             history[3 * b] += (1.0 - scale) * (t1 - t3) / shear
@@ -83,6 +86,9 @@ CONES: dict[str, Callable[[float, float], tuple[float, float]]] = {
 }
 
 
+VON_MISES = {"plane_strain": 1.0, "compression": 2 / sqrt(3)}  # sqrt(J2) / c that is left of each cone with phi = 0
+
+
 @dataclass(frozen=True)
 class DruckerPrager(RateMaterial, Elastic):
     """Drucker-Prager soil, in rate form; history as of MohrCoulomb.
@@ -94,7 +100,8 @@ class DruckerPrager(RateMaterial, Elastic):
     E, nu, rho0
         Young's modulus and density above zero, Poisson's ratio between -1 and 0.5.
     phi, psi
-        Angles of friction and dilation in degrees, 0 < phi < 90, 0 <= psi <= phi.
+        Angles of friction and dilation in degrees, 0 <= phi < 90, 0 <= psi <= phi; phi = 0 needs c above zero, and
+        psi is 0 then unless another one is given.
     c
         Cohesion in the unit of E, zero or more.
     cone
@@ -122,11 +129,13 @@ class DruckerPrager(RateMaterial, Elastic):
     memory: ClassVar[tuple[str, ...]] = ("gamma_p", "eps_v_p", "void")
     sums: ClassVar[tuple[str, ...]] = ("gamma_p", "eps_v_p")
     order: ClassVar[float | None] = 1.0
+    out_of_plane: ClassVar[Literal["", "trial", "plane"]] = "trial"
     respond = staticmethod(respond)
 
     def __post_init__(self) -> None:
         Elastic.__post_init__(self)
         RateMaterial.__post_init__(self)
+        undilated(self)
         check_strength(self.phi, self.psi, self.c)
         check_void(self.void, self.c)
         if self.cone not in CONES:
@@ -151,8 +160,9 @@ class DruckerPrager(RateMaterial, Elastic):
         """Constants (9,): lam, 2 mu, a, b, and factors of the return."""
         a, d = CONES[self.cone](self.phi, self.psi)
         stiff = self.lam + 2 * self.mu / 3  # bulk modulus
-        ratio, apex = d * stiff / self.mu, self.c / tan(radians(self.phi))
+        ratio, apex = d * stiff / self.mu, apex_of(self.phi, self.c)
+        strength = a * apex if self.phi else VON_MISES[self.cone] * self.c
         return np.array(
-            [self.lam, 2 * self.mu, a, a * apex, 1 / (1 + a * ratio), ratio, apex, 1 / stiff,
+            [self.lam, 2 * self.mu, a, strength, 1 / (1 + a * ratio), ratio, apex, 1 / stiff,
              self.void]
         )  # fmt: skip

@@ -4,6 +4,7 @@ In uniaxial strain sigma = (lam + 2 mu) ln(stretch). It has no energy: no manufa
 """
 
 from dataclasses import dataclass
+from typing import ClassVar, Literal
 
 import numpy as np
 
@@ -44,6 +45,7 @@ class Hypoelastic(RateMaterial, Elastic):
         For a parameter that is out of range.
     """
 
+    out_of_plane: ClassVar[Literal["", "trial", "plane"]] = "trial"
     respond = staticmethod(respond)
 
     def __post_init__(self) -> None:

@@ -10,11 +10,14 @@ or to an end of it.
 A cut-off above the apex c cot phi has no effect: it is put at the apex, where all corners of the cut-off meet. With
 psi > 0 the flow of the six planes reaches every state beyond the apex. With psi = 0 flow cannot change the pressure;
 then the return to the apex is a projection, and the plastic strain is what the elastic one leaves: C (trial - sigma).
+
+With phi = 0 it is Tresca's material, k = 1: s1 - s3 <= 2 c at any pressure. There is no apex, nothing dilates, and the
+cut-off is at sigma_t itself, however high.
 """
 
 from dataclasses import dataclass
 from math import cos, inf, radians, sin, sqrt, tan
-from typing import ClassVar
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
@@ -107,14 +110,14 @@ class MohrCoulomb(RateMaterial, Elastic):
     E, nu, rho0
         Young's modulus and density above zero, Poisson's ratio between -1 and 0.5.
     phi
-        Angle of friction in degrees, 0 < phi < 90: for phi = 0 there is no apex.
+        Angle of friction in degrees, 0 <= phi < 90; 0 with c above zero is Tresca.
     psi
         Angle of dilation in degrees, 0 <= psi <= phi: without hardening, flow that contracts has no end and leaves
-        states around the apex without a return.
+        states around the apex without a return. It is 0 with phi = 0 unless another one is given.
     c
         Cohesion in the unit of E, zero or more.
     sigma_t
-        Tension cut-off in the unit of E, zero or more.
+        Tension cut-off in the unit of E, zero or more; far above the cohesion it has no effect.
     void
         1 with void-strain memory (solver/voids.py), which needs c = 0.
 
@@ -140,11 +143,13 @@ class MohrCoulomb(RateMaterial, Elastic):
     sums: ClassVar[tuple[str, ...]] = ("gamma_p", "eps_v_p")
     order: ClassVar[float | None] = 1.0
     yields_in_plane: ClassVar[bool] = True
+    out_of_plane: ClassVar[Literal["", "trial", "plane"]] = "trial"
     respond = staticmethod(respond)
 
     def __post_init__(self) -> None:
         Elastic.__post_init__(self)
         RateMaterial.__post_init__(self)
+        undilated(self)
         check_strength(self.phi, self.psi, self.c)
         check_void(self.void, self.c)
         if not 0 <= self.sigma_t < inf:
@@ -169,8 +174,7 @@ class MohrCoulomb(RateMaterial, Elastic):
         """Constants (19,): lam, 2 mu, strength, and the weights of trial stresses in the return to each region."""
         nu, k, m = self.nu, slope(self.phi), slope(self.psi)
         cohesive = 2 * self.c * sqrt(k)
-        apex = self.c / tan(radians(self.phi))
-        tension = min(self.sigma_t, apex)
+        tension, apex = min(self.sigma_t, apex_of(self.phi, self.c)), apex_of(self.phi, self.c)
         low = k * tension - cohesive if tension < apex else tension  # s3 where plane and cut-off meet
         dilation = nu / (1 - 2 * nu) * (m - 1)  # the flow's stress is 2 mu (dilation (1, 1, 1) + (m, 0, -1))
         plane = np.array([dilation + m, dilation, dilation - 1]) / (dilation * (k - 1) + k * m + 1)
@@ -190,10 +194,23 @@ def slope(angle: float) -> float:
     return ((1 + sin(radians(angle))) / cos(radians(angle))) ** 2
 
 
+def apex_of(phi: float, c: float) -> float:
+    """Pressure c cot phi of the apex, tension positive; inf for phi = 0 (degrees), which has none."""
+    return c / tan(radians(phi)) if phi else inf
+
+
+def undilated(soil: Any) -> None:
+    """Set psi to 0 where phi = 0 and psi is the class's usual one: what has no friction does not dilate."""
+    if soil.phi == 0 and soil.psi == type(soil).psi:
+        object.__setattr__(soil, "psi", 0.0)
+
+
 def check_strength(phi: float, psi: float, c: float) -> None:
     """Raise ValueError for angles (degrees) or a cohesion that are out of range."""
-    if not 0 < phi < 90:
-        raise ValueError(f"phi = {phi} must lie between 0 and 90 degrees")
+    if not 0 <= phi < 90:
+        raise ValueError(f"phi = {phi} must be at least 0 and below 90 degrees")
+    if phi == 0 and not c > 0:
+        raise ValueError("phi = 0 must have c above zero, its strength; without both nothing is left of the soil")
     if not 0 <= psi <= phi:
         raise ValueError(f"psi = {psi} must lie between 0 and phi = {phi} degrees")
     if not 0 <= c < inf:

@@ -22,7 +22,7 @@ to cyclic loading, and the paper's column has none.
 
 from dataclasses import dataclass, fields
 from math import inf, isfinite, radians, sin, sqrt, tan
-from typing import ClassVar
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -222,6 +222,7 @@ class Ubcsand(RateMaterial):
     sums: ClassVar[tuple[str, ...]] = ("gamma_p", "eps_v_p", "work_p")
     yields_in_plane: ClassVar[bool] = True
     order: ClassVar[float | None] = 2.0
+    out_of_plane: ClassVar[Literal["", "trial", "plane"]] = "plane"
     respond = staticmethod(respond)
 
     def __post_init__(self) -> None:
