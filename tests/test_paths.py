@@ -190,6 +190,8 @@ def test_finite_shear_meets_its_closed_form(rate: str) -> None:
     assert np.abs(found.curve["tau"] - other).max() > 1
     assert found.order == pytest.approx(2, abs=0.02) if rate != "truesdell" else max(found.errors) < 1e-13
     assert all(one.outcome is Outcome.PASS for one in checks(solid, found))
+    first = replace(found, errors=tuple(1e-7 * 2**n for n in range(4, -1, -1)))  # small, and of order 1
+    assert [one.outcome for one in checks(solid, first)] == [Outcome.PASS, Outcome.FAIL]
 
 
 @pytest.mark.parametrize("wrong", ["same_rotation", "strain_start", "explicit_jaumann", "printed_rotation"])

@@ -13,6 +13,7 @@ from mpm_verify.cases.element.case import parts
 from mpm_verify.cases.element.element import Element
 from mpm_verify.cases.element.exact import exact
 from mpm_verify.cases.element.following import follow
+from mpm_verify.cases.element.judged import checks
 from mpm_verify.cases.element.known_ends import ends
 from mpm_verify.cases.element.paths import CELL, TESTS, ElementTest, given
 from mpm_verify.cases.element.space import takes
@@ -245,3 +246,15 @@ def test_a_stress_that_is_held_stays_over_many_steps() -> None:
     """What Newton leaves of the cell pressure does not add up."""
     found = follow(Element(MohrCoulomb()), TESTS["triaxial_compression"], 400, np.array([-5e3, -5e3, -5e3, 0.0]))
     assert np.abs(found.sigma[:, [0, 2]] + 5e3).max() < 1e-11 * 5e3
+
+
+@pytest.mark.slow
+def test_a_biaxial_test_of_sand_beyond_failure() -> None:
+    """At 1 kPa it fails on the way: the exact curve goes on with the flow at failure, and no order is asked for."""
+    sand = Ubcsand()
+    found = study(sand, TESTS["biaxial"], 1e3, 50)
+    assert found.truth is not None
+    assert found.errors[-1] < 1e-6  # the other sign of the flow: 3.4e-3
+    assert found.truth["ey"][-1] == pytest.approx(TESTS["biaxial"].length, rel=1e-9)
+    names = {check.name: check.outcome for check in checks(sand, found)}
+    assert names == {"error at the end, finest": Outcome.PASS}
