@@ -258,3 +258,21 @@ def test_a_biaxial_test_of_sand_beyond_failure() -> None:
     assert found.truth["ey"][-1] == pytest.approx(TESTS["biaxial"].length, rel=1e-9)
     names = {check.name: check.outcome for check in checks(sand, found)}
     assert names == {"error at the end, finest": Outcome.PASS}
+
+
+@pytest.mark.parametrize(
+    ("name", "test", "known"),
+    [
+        ("mohr_coulomb", "isotropic", True),
+        ("mohr_coulomb:phi=10,nu=0.2", "isotropic", False),
+        ("mohr_coulomb:phi=0,c=1000", "isotropic", False),
+        ("mohr_coulomb:phi=0,c=1000", "oedometric", False),
+        ("mohr_coulomb:phi=45", "oedometric", True),
+    ],
+)
+def test_a_soil_that_yields_in_compression_has_no_elastic_curve(name: str, test: str, known: bool) -> None:
+    """In plane strain zz lags behind: 2 nu of xx in even compression, K0 of yy in oedometric compression."""
+    material = create(MATERIALS, name)
+    assert (exact(material, TESTS[test], 5e3) is not None) is known
+    if known:
+        assert study(material, TESTS[test], 5e3, 5).errors[-1] < 1e-12

@@ -152,7 +152,8 @@ def perfect(material: MohrCoulomb, test: ElementTest, begun: State) -> tuple[Col
     stress = -float(begun.sigma[0])
     k, m = slope(material.phi), slope(material.psi)
     K0 = material.nu / (1 - material.nu)
-    if test.name == "isotropic" or (test.name == "oedometric" and K0 * k >= 1):
+    least = {"isotropic": 2 * material.nu, "oedometric": K0}  # of the elastic principal stresses, over the largest
+    if least.get(test.name, 0.0) * k >= 1:
         return elastic(material, test, begun), "linear elasticity"
     if test.name != "biaxial":
         return None
