@@ -20,7 +20,7 @@ from mpm_verify.cases.mms.run import QUANTITIES, Result, Run
 from mpm_verify.mms.discretisation import grid_box, time_steps, width
 from mpm_verify.mms.manufacture import Manufactured
 from mpm_verify.mms.square import Square
-from mpm_verify.solver.boundary import box, moving
+from mpm_verify.solver.boundary import Walls, box, moving
 from mpm_verify.solver.failure import Failure, FailureKind, RunFailed
 from mpm_verify.solver.layout import CENTRED, Layout, parallelograms
 from mpm_verify.solver.plugins import (
@@ -95,9 +95,12 @@ def setup(run: Run) -> tuple[Model, Comparison, int]:
     particles.carried = exact.kernel.columns(X)
     transfer, stress = create(TRANSFERS, run.transfer), run.stress
     scheme = Scheme(transfer, stress, run.staggered)
-    walls = moving(grid, solution.walls) if solution.boundary == "moving" else box(grid, solution.boundary)
+    if solution.boundary == "moving":
+        walls: Walls = moving(grid, solution.reference_walls if basis.reference else solution.walls)
+    else:
+        walls = box(grid, solution.boundary)
     model = Model(grid, particles, basis, material, walls, dt, scheme)
-    transfer.start(model, lambda X: velocity_gradient(exact, X, -lag, 1e-3 * dt))
+    transfer.start(model, lambda X: velocity_gradient(exact, X, -lag, 1e-3 * dt, basis.reference))
     every = max(1, steps // LOOKS)
     packing = Packing(exact, layout, dx, every) if run.layout != "uniform" or len(layout) <= COUNTED else None
     norms, gaps = Norms(len(particles), float(particles.V0.mean())), Gaps(layout, every)
@@ -119,10 +122,13 @@ def moves_grid(solution: Any) -> bool:
     return solution.boundary == "free" and not isinstance(solution, Square)
 
 
-def velocity_gradient(exact: Manufactured, X: Floats, t: float, short: float) -> Floats:
-    """Velocity gradient L = dF/dt F^-1 (P,2,2), by the central difference of the exact F over t -/+ short."""
-    rate = (exact.F(X, t + short) - exact.F(X, t - short)) / (2 * short)
-    L: Floats = rate @ np.linalg.inv(exact.F(X, t))
+def velocity_gradient(exact: Manufactured, X: Floats, t: float, short: float, reference: bool = False) -> Floats:
+    """Velocity gradient L = dF/dt F^-1 (P,2,2), by the central difference of the exact F over t -/+ short.
+
+    With respect to X it is dF/dt: the one of nodes that stay in the `reference` configuration.
+    """
+    rate: Floats = (exact.F(X, t + short) - exact.F(X, t - short)) / (2 * short)
+    L: Floats = rate if reference else rate @ np.linalg.inv(exact.F(X, t))
     return L
 
 

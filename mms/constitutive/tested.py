@@ -65,6 +65,7 @@ class Reason(StrEnum):
     OWN_AXES = "own_axes"  # the material tells its axes apart
     FILTER = "filter"  # a filter, applied twice, filters twice
     BUDGET = "budget"  # the energy budget is that of update-stress-last, and of positions that move with the nodes
+    REFERENCE = "reference"  # weights of the reference positions
     OTHER_RATE = "other_rate"  # smoothing does not take this rate
 
 

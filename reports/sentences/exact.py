@@ -115,6 +115,7 @@ REASONS = {
     Reason.OWN_AXES: "the material tells its own axes apart",
     Reason.FILTER: "through nodes and back is a filter, and no projector",
     Reason.BUDGET: "the budget is that of update-stress-last and of positions that move with the nodes",
+    Reason.REFERENCE: "weights are those of the reference positions, which no particle leaves",
     Reason.OTHER_RATE: "smoothing does not take this rate",
 }
 
