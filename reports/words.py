@@ -14,6 +14,7 @@ METHODS = {
     "cpdi2": "CPDI2",
     "bspline2": "quadratic B-spline",
     "bspline3": "cubic B-spline",
+    "tlmpm": "TLMPM",
 }
 QUANTITIES = {"u": "u", "v": "v", "F": "F", "sigma": "\N{GREEK SMALL LETTER SIGMA}"}
 MEANING = {

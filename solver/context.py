@@ -35,8 +35,8 @@ class Context:
 
     @property
     def crossings(self) -> int:
-        """Number of cell faces that particles have passed so far."""
-        return int(self.cell_crossings.sum())
+        """Number of cell faces that particles have passed so far; none where they stay at X on the grid."""
+        return 0 if self.basis.reference else int(self.cell_crossings.sum())
 
     @property
     def time(self) -> float:
@@ -52,8 +52,9 @@ class Context:
 def fail(context: Context, row: int, kind: FailureKind, numbers: dict[str, float] | None = None) -> Never:
     """Raise RunFailed for the particle in a row; what is not finite is named first, since it is the cause."""
     p, grid = context.particles, context.grid
+    at = context.basis.on_grid(p)[row]
     finite = all(np.isfinite(a[row]).all() for a in (p.x, p.v, p.F, p.sigma))
-    cell = tuple(grid.cell(p.x[row]).tolist()) if (np.abs(p.x[row]) < 1e9 * grid.dx).all() else None
+    cell = tuple(grid.cell(at).tolist()) if (np.abs(at) < 1e9 * grid.dx).all() else None
     if not finite:
         kind, numbers = FailureKind.NOT_FINITE, None
     raise RunFailed(kind, context.steps, int(p.id[row]), cell, numbers)

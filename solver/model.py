@@ -125,7 +125,7 @@ class Model(Context):
         if self.smoothing:
             self.smoothing.check(self.material)
         self.material.start(self.particles)
-        self.slabs.sort(self.grid, self.particles)
+        self.slabs.sort(self.grid, self.particles, self.basis.on_grid(self.particles))
         self.scheme.transfer.start(self)
 
     def watch(self, *observers: Observer) -> None:

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from mpm_verify.solver.state import Grid, Ints, Particles
+from mpm_verify.solver.state import Floats, Grid, Ints, Particles
 
 SLAB_COLUMNS = 8  # leaves a particle with a reach of one column two columns to wander before the next sort
 
@@ -27,9 +27,9 @@ class Slabs:
     start: Ints = field(default_factory=lambda: np.zeros(1, np.int64))
     strayed: Ints = field(default_factory=lambda: np.zeros(0, np.int64))
 
-    def sort(self, grid: Grid, particles: Particles) -> None:
-        """Put the particles in the order of their slabs, keeping their order within one."""
-        column = np.floor((particles.x[:, 0] - grid.origin[0]) / grid.dx)
+    def sort(self, grid: Grid, particles: Particles, x: Floats) -> None:
+        """Put the particles, on the grid at x (P,2), in the order of their slabs, keeping their order within one."""
+        column = np.floor((x[:, 0] - grid.origin[0]) / grid.dx)
         slab = np.clip(column, 0, grid.nx - 1).astype(np.int64) // self.slab_columns
         if (np.diff(slab) < 0).any():
             order = np.argsort(slab, kind="stable")

@@ -48,7 +48,8 @@ def stress_last(model: Model) -> None:
     """Step with update-stress-last: v, x and F in one pass over the particles, then sigma."""
     particles_to_grid(model)
     equation_of_motion(model)
-    x = model.particles.x.copy() if model.smoothing else model.particles.x
+    x = model.basis.on_grid(model.particles)
+    x = x.copy() if model.smoothing else x
     grid_to_particles(model)
     update_stress(model, x)
 
@@ -62,7 +63,7 @@ def stress_modified_last(model: Model) -> None:
     new_velocities(model)
     momentum = spread(model, model.particles.v)
     model.scheme.transfer.give(model, momentum)
-    mapped, x = walled(model, momentum), model.particles.x.copy()
+    mapped, x = walled(model, momentum), model.basis.on_grid(model.particles).copy()
     model.scheme.transfer.filter(model, mapped)
     advect(model, model.grid.velocity_acceleration, mapped, model.scheme.half(model.dt))
     model.basis.convect(model.particles, model.grid, model.dt)
@@ -81,7 +82,7 @@ def stress_first(model: Model) -> None:
     model.scheme.transfer.filter(model, before)
     advect(model, rest, before, model.scheme.half(model.dt))
     fail_if_inverted(model)
-    update_stress(model, model.particles.x)
+    update_stress(model, model.basis.on_grid(model.particles))
     particles_to_grid(model)
     equation_of_motion(model)
     new_velocities(model)
@@ -110,7 +111,7 @@ def particles_to_grid(model: Model) -> None:
             return
         fail_if_outside(model, s.strayed[s.strayed >= 0])
         s.slab_columns *= 2 if attempt else 1
-        s.sort(g, p)
+        s.sort(g, p, model.basis.on_grid(p))
     raise RunFailed(FailureKind.SLAB, model.steps)
 
 

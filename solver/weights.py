@@ -62,6 +62,8 @@ class Basis:
         through those; otherwise they act through points, see solver/surface.py.
     gradients_jump
         Whether gradients of weights jump where a particle crosses a cell.
+    reference
+        Whether weights are those of the reference positions (total Lagrangian), their gradients pushed forward by F.
     has_limit
         Whether half diagonals of domains can have a limit.
     limit
@@ -76,6 +78,7 @@ class Basis:
     positive: ClassVar[bool] = True
     faces_carry: ClassVar[bool] = False
     gradients_jump: ClassVar[bool] = False
+    reference: ClassVar[bool] = False
     has_limit: ClassVar[bool] = False
     limit = inf
 
@@ -101,6 +104,10 @@ class Basis:
             At rest and undeformed, x = X.
         """
         return Particles(layout.X, rho0 * layout.V0, layout.V0, self.domain(layout, position))
+
+    def on_grid(self, particles: Particles) -> Floats:
+        """Positions (P,2) at which particles are on the grid: x, or X where weights are those of the reference."""
+        return particles.X if self.reference else particles.x
 
     @classmethod
     def promises(cls, crossing: bool) -> Promise:

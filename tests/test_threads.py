@@ -61,7 +61,8 @@ def test_order_of_presentation(name: str, monkeypatch: pytest.MonkeyPatch) -> No
     sorts, sort = [], Slabs.sort
     monkeypatch.setattr(Slabs, "sort", lambda self, *args: sorts.append(0) or sort(self, *args))
     plain = fly(channel(name), 140).particles
-    assert len(sorts) >= 5  # at the start, and again as it moves
+    again = not create("mpm_verify.solver.basis", name).reference
+    assert len(sorts) >= 5 if again else len(sorts) == 1  # at the start, and again as it moves on the grid
     order = np.random.default_rng(1).permutation(len(plain))
     shuffled = fly(channel(name, order=order), 140).particles
     assert np.ptp(plain.x[:, 0]) < 12
@@ -100,16 +101,17 @@ def test_rows_travel_together(name: str) -> None:
     np.testing.assert_array_equal(np.sort(p.id), np.arange(len(p)))
     np.testing.assert_array_equal(p.in_initial_order("X"), X)
     np.testing.assert_array_equal(p.carried, np.concatenate([p.X, p.id[:, None]], axis=1))
-    slab = (np.floor(p.x[:, 0] - m.grid.origin[0]) // m.slabs.slab_columns).astype(int)
+    x = m.basis.on_grid(p)
+    slab = (np.floor(x[:, 0] - m.grid.origin[0]) // m.slabs.slab_columns).astype(int)
     start = m.slabs.start
     assert start[0] == 0
     assert start[-1] == len(p)
     guard = (m.slabs.slab_columns - 1) // 2
     for s in range(len(start) - 1):  # no particle further from its slab than the guard
-        inside = p.x[start[s] : start[s + 1], 0] - m.grid.origin[0]
+        inside = x[start[s] : start[s + 1], 0] - m.grid.origin[0]
         assert (inside >= s * m.slabs.slab_columns - guard).all()
         assert (inside < (s + 1) * m.slabs.slab_columns + guard).all()
-    assert slab.max() > 1
+    assert slab.max() > 1 or m.basis.reference
 
 
 def test_sorting_keeps_the_order_within_a_slab() -> None:
@@ -118,7 +120,7 @@ def test_sorting_keeps_the_order_within_a_slab() -> None:
     p.x[:, 0] = np.random.default_rng(3).uniform(0, 60, len(p))
     p.id = np.arange(len(p))
     slabs = Slabs()
-    slabs.sort(grid, p)
+    slabs.sort(grid, p, p.x)
     for s in range(len(slabs.start) - 1):
         rows = slice(slabs.start[s], slabs.start[s + 1])
         assert (np.floor(p.x[rows, 0] + 2) // SLAB_COLUMNS == s).all()

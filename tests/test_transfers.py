@@ -216,7 +216,10 @@ def spinning(name: str, transfer: str, order: str = "usl") -> Model:
 def angular_momentum(m: Model) -> float:
     """sum m (x_p x v_p), with the affine part B_yx - B_xy where a transfer keeps one."""
     p = m.particles
-    own = p.affine_velocity[:, 2] - p.affine_velocity[:, 1] if p.affine_velocity.shape[1] else 0.0
+    B = p.affine_velocity.reshape(-1, 2, 2) if p.affine_velocity.shape[1] else np.zeros_like(p.F)
+    if m.basis.reference:
+        B = B @ p.F.transpose(0, 2, 1)  # of X to x
+    own = B[:, 1, 0] - B[:, 0, 1]
     return float(np.sum(p.m * (p.x[:, 0] * p.v[:, 1] - p.x[:, 1] * p.v[:, 0] + own)))
 
 
@@ -226,17 +229,24 @@ def turned(name: str, transfer: str, order: str = "usl", steps: int = 525) -> fl
     m = spinning(name, transfer, order)
     before = angular_momentum(m)
     go(m, steps)
-    assert steps == 1 or m.crossings > 200
+    assert steps == 1 or m.crossings > 200 or m.basis.reference
     return 1.0 - angular_momentum(m) / before
 
 
 @every_order
 @every_basis
 def test_apic_conserves_angular_momentum(name: str, order: str) -> None:
-    """Exactly, over a quarter of a turn and cell crossings; the centroid of cpdi2 drifts from sum N v_i."""
+    """Exactly, over a quarter of a turn and cell crossings; the centroid of cpdi2 drifts from sum N v_i.
+
+    Nodes of the reference stay at X: where F takes them is known beside each particle alone, not of the nodes.
+    """
     lost = abs(turned(name, "apic", order))
     if name == "cpdi2":
         assert 1e-7 < lost < 5e-5
+    elif name == "tlmpm":
+        assert 1e-6 < lost < (5e-3 if order == "usf" else 5e-5)
+        assert abs(turned(name, "apic", order, steps=1)) < 1e-8
+        return
     else:
         assert lost < 5e-12  # waves between nodes that a cubic spline hardly reaches magnify round-off
     assert abs(turned(name, "apic", order, steps=1)) < 1e-14
@@ -262,7 +272,7 @@ def test_what_the_others_lose_of_it(name: str) -> None:
     assert 0.35 < lost["fmpm:order=2"] < 0.85
     assert lost["flip"] < lost["flip:fraction=0.95"] < lost["pic"]
     assert 0.35 < lost["flip:fraction=0.95"] < 0.75
-    assert 0.01 < lost["flip"] < 0.03
+    assert (0.001 < lost["flip"] < 0.004) if name == "tlmpm" else (0.01 < lost["flip"] < 0.03)
     one = {transfer: turned(name, transfer, steps=1) for transfer in TRANSFERS}
     assert abs(one["flip"]) < 1e-14  # at rest relative to the turn there is no force, and v stays
     assert one["flip:fraction=0.95"] == pytest.approx(0.05 * one["pic"], rel=1e-6)  # a mean of the two, in one step

@@ -6,6 +6,7 @@ from dataclasses import replace
 from mpm_verify.cases.column.exam import examine
 from mpm_verify.cases.column.execute import material_of, setup, steps_of
 from mpm_verify.cases.column.run import ColumnResult, ColumnRun
+from mpm_verify.solver.plugins import METHODS, create, label
 
 __all__ = ["Result", "Run", "check", "examine"]
 
@@ -23,6 +24,11 @@ def check(runs: Sequence[ColumnRun]) -> None:
         if run.courant > 1:
             raise ValueError(f"courant = {run.courant} is above the stability limit of 1; 0.4 is usual")
         steps_of(run, material_of(run))
+        if create(METHODS, run.method).reference:
+            raise ValueError(
+                f"{label(run.method)} keeps its nodes in the reference configuration, where no grain of a column meets "
+                "the floor or another grain; choose --method cpdi"
+            )
     kinds = (replace(run, cells=2, ppc=4, aspect=7.0, channel=18.0, courant=0.4, duration=1e-3) for run in runs)
     for kind in dict.fromkeys(kinds):
         setup(kind)

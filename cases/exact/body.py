@@ -117,6 +117,11 @@ def deformed(F: Floats) -> Callable[[Floats], Floats]:
     return lambda X: middle + (X - middle) @ F.T
 
 
+def carried(subject: Subject, nodes: Floats, F: Floats) -> Floats:
+    """Positions of nodes (n,2) beside particles deformed by F: their own, or where F takes them from the reference."""
+    return deformed(F)(nodes) if subject.basis.reference else nodes
+
+
 def populated(subject: Subject, pieces: Layout, F: Floats) -> Particles:
     """Particles of a layout, deformed uniformly by F (2,2)."""
     p: Particles = subject.basis.populate(pieces, subject.material.rho0, deformed(F))

@@ -3,12 +3,14 @@
 from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mpm_verify.cases.exact.body import (
     DX,
     STRAINED,
     Subject,
     Variant,
+    carried,
     layout,
     modelled,
     populated,
@@ -55,7 +57,7 @@ def smoothed(subject: Subject, specification: str) -> Model:
 def fractions(model: Model, where: str) -> Floats:
     """Weights (P,n) of the particles' centres: 1 at the lower left node of their cell, or hats of the four nodes."""
     g, p = model.grid, model.particles
-    away = (p.x[:, None] - g.nodes[None]) / g.dx
+    away = (model.basis.on_grid(p)[:, None] - g.nodes[None]) / g.dx
     if where == "cell":
         inside: Floats = ((away >= 0) & (away < 1)).all(axis=2).astype(float)
         return inside
@@ -77,15 +79,15 @@ def projected(subject: Subject, where: str) -> list[Tested]:
     model = smoothed(subject, f"volumetric:where={where}")
     p, smoothing = model.particles, model.smoothing
     assert smoothing is not None
-    V = (p.V0 * p.J)[:, None] / DX**2
+    V, x = (p.V0 * p.J)[:, None] / DX**2, subject.basis.on_grid(p)
     a, b = random(len(p), 3, seed=13), random(len(p), 3, seed=14)
-    first, other = smoothing.project(model, p.x, a.copy()), smoothing.project(model, p.x, b.copy())
-    kept = smoothing.project(model, p.x, np.full((len(p), 1), 0.7))
+    first, other = smoothing.project(model, x, a.copy()), smoothing.project(model, x, b.copy())
+    kept = smoothing.project(model, x, np.full((len(p), 1), 0.7))
     pairs = {
         "means": (first, means(model, where, a)),
         "constants": (kept, 0.7),
         "adjoint": ((V * a * other).sum(axis=0), (V * b * first).sum(axis=0)),
-        "twice": (smoothing.project(model, p.x, first.copy()), first),
+        "twice": (smoothing.project(model, x, first.copy()), first),
     }
     return [
         not_asked(f"smoothing_{name} {where}", Part.SMOOTHING, Reason.FILTER)
@@ -122,7 +124,7 @@ def ratio(subject: Subject) -> Tested:
     p.F[:] = before  # volumes are those of the start of the step
     mean = means(model, smoothing.where, step[:, None])[:, 0]
     p.F[:] = now
-    found = smoothing.strain(model, p.x)
+    found = smoothing.strain(model, subject.basis.on_grid(p))
     expected = np.sqrt(1 + smoothing.beta * (mean / step - 1))[:, None, None] * now
     return Tested("smoothing_ratio fbar", FAILED if found is None else off(found, expected, 1.0), bound(SUMMED),
                   Part.SMOOTHING)  # fmt: skip
@@ -132,8 +134,12 @@ def uniform(subject: Subject, name: str, where: str) -> Tested:
     """Uniform strain and stress: a step with smoothing gives the sigma of a step without."""
     L, middle = 0.02 * subject.speed / DX * np.array([[0.3, -0.9], [0.7, -0.4]]), np.array([1.5, 1.35])
     found = []
+
+    def rule(x: Floats, t: float, dt: float) -> tuple[NDArray[np.bool_], Floats, Floats]:
+        return np.ones(x.shape, bool), (carried(subject, x, STRAINED) - middle) @ L.T, np.zeros(x.shape)
+
     for smoothing in (None, create(SMOOTHINGS, f"{name}:where={where}")):
-        walls = ruled(lambda x, t, dt: (np.ones(x.shape, bool), (x - middle) @ L.T, np.zeros(x.shape)))
+        walls = ruled(rule)
         p = populated(subject, layout(), STRAINED)
         p.sigma[:] = 1e-3 * subject.stress * np.array([-1.0, -0.9, -0.8, 0.05])
         advance(modelled(subject, p, Variant(), walls, smoothing=smoothing), rest)

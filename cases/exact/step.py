@@ -15,6 +15,7 @@ from mpm_verify.cases.exact.body import (
     Subject,
     Variant,
     by_id,
+    carried,
     layout,
     modelled,
     populated,
@@ -94,6 +95,7 @@ def affine(subject: Subject, variant: Variant) -> list[Tested]:
 
     def rule(x: Floats, t: float, step: float) -> tuple[NDArray[np.bool_], Floats, Floats]:
         """Grid of the first step alone: one that is not moved, or at another time, has another velocity."""
+        x = carried(subject, x, STRAINED)
         return np.ones(x.shape, bool), (1 + t / dt) * (step / dt) * velocity(x), acceleration(x)
 
     walls = ruled(rule)

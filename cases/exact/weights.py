@@ -9,6 +9,7 @@ from mpm_verify.cases.exact.body import (
     STRAINED,
     Subject,
     Variant,
+    carried,
     deformed,
     layout,
     modelled,
@@ -37,7 +38,7 @@ def tests(subject: Subject) -> list[Tested]:
 def moments(subject: Subject, model: Model) -> Tested:
     """Sums of N, dN, N x and dN x: 1, 0, the particle's position and the unit tensor."""
     p = model.particles
-    w, away = weights(model, p.x, p.F), (model.grid.nodes - 1.5) / DX
+    w, away = weights(model, p.x, p.F), (carried(subject, model.grid.nodes, STRAINED) - 1.5) / DX
     L = np.einsum("pnb,na->pab", w.dN * DX, away)
     pairs: Pairs = [
         (w.N.sum(axis=1), 1.0, 1.0),
@@ -60,7 +61,7 @@ def domain_moment(subject: Subject, model: Model) -> Tested:
     """Sum of N x y: the mean of x y over the corners of the domain that the layout and F make, or at the particle."""
     p, motion = model.particles, subject.basis.domain_motion
     w, nodes = weights(model, p.x, p.F), model.grid.nodes / DX
-    x = p.x / DX
+    x = subject.basis.on_grid(p) / DX
     expected = x[:, 0] * x[:, 1]
     if motion == "deformed":
         if subject.basis.cut(p.F, p.domain, DX).any():
@@ -98,7 +99,10 @@ def area(corners: Floats) -> Floats:
 
 
 def balances(subject: Subject, variant: Variant) -> list[Tested]:
-    """Sums over the nodes and their first moments against those of the particles; the work of forces on L x + c."""
+    """Sums over the nodes and their first moments against those of the particles; the work of forces on L x + c.
+
+    Of reference nodes moments are those of X, and the work is that of the first Piola-Kirchhoff stress on L X + c.
+    """
     p = shaken(subject, populated(subject, layout(), STRAINED))
     model = modelled(subject, p, variant)
     p, g, c, rho = model.particles, model.grid, subject.speed, subject.material.rho0
@@ -108,8 +112,10 @@ def balances(subject: Subject, variant: Variant) -> list[Tested]:
     particles_to_grid(model)
     V = p.V0 * p.J
     plane = p.sigma[:, [0, 3, 3, 1]].reshape(-1, 2, 2)
+    if subject.basis.reference:
+        plane = plane @ np.linalg.inv(p.F).transpose(0, 2, 1)
     unit = rho * DX**2  # mass of a cell
-    centre = (p.x - 1.5) / DX
+    centre = (subject.basis.on_grid(p) - 1.5) / DX
     nodes = (g.nodes - 1.5) / DX
     virtual = np.einsum("na,nb->ab", g.force, nodes) * DX
     work = -np.einsum("p,pab->ab", V, plane) + np.einsum("pa,pb->ab", p.m[:, None] * p.b, centre) * DX

@@ -56,7 +56,7 @@ class Expectation:
     within, finest
         Largest relative distance from them; and whether of the finest level that has one alone, or of all.
     stall, stall_h
-        Local order that the order falls below, on cells of `stall_h` or finer.
+        Local order that the order falls below, on cells of `stall_h` or finer; without it, on which runs are inverted.
     failed
         Kind of failure that every run ends with.
 

@@ -20,6 +20,7 @@ from mpm_verify.mms.cells import fitting, ratio
 from mpm_verify.mms.discretisation import dimension
 from mpm_verify.mms.duration import lasting
 from mpm_verify.mms.energy import check_energy
+from mpm_verify.mms.solutions._own import sides
 from mpm_verify.solver.layout import per_side
 from mpm_verify.solver.plugins import (
     LAYOUTS,
@@ -131,6 +132,13 @@ def check_ours(runs: Sequence[Run]) -> None:
     for smoothing, material in dict.fromkeys((run.smoothing, run.material) for run in runs):
         if smoothing != "none":
             create(SMOOTHINGS, smoothing).check(create(MATERIALS, material))
+    for run in (run for run in runs if create(METHODS, run.method).reference):
+        if run.smoothing != "none":
+            raise ValueError(
+                f"{run.method} smoothes nothing, as its particles stay in their cells; leave --smoothing out"
+            )
+        if {"pulled", "prescribed"} & set(sides(create(SOLUTIONS, run.solution))):
+            raise ValueError(f"{run.method} has no edges that are pulled or prescribed; take --method cpdi")
     for run in runs:
         own = is_file(run.solution) and dimension(create(SOLUTIONS, run.solution)) == 3  # told by its check
         if run.dim == 3 and not own:

@@ -103,9 +103,9 @@ def setup(run: Run) -> tuple[Model, Comparison, int]:
     particles.carried = exact.kernel.columns(X)
     transfer, stress = create(TRANSFERS, run.transfer), run.stress
     scheme = Scheme(transfer, stress, run.staggered)
-    held, edge = walls(solution, grid), surface(solution, exact, layout)
+    held, edge = walls(solution, grid, basis.reference), surface(solution, exact, layout)
     model = Model(grid, particles, basis, material, held, dt, scheme, damping_of(run), smoothing_of(run), edge)
-    transfer.start(model, lambda X: velocity_gradient(exact, X, -lag, 1e-3 * dt))
+    transfer.start(model, lambda X: velocity_gradient(exact, X, -lag, 1e-3 * dt, basis.reference))
     every = max(1, steps // LOOKS)
     packing = Packing(exact, layout, dx, every) if run.layout != "uniform" or len(layout) <= COUNTED else None
     norms, gaps = Norms(len(particles), float(particles.V0.mean())), Gaps(layout, every)
@@ -133,9 +133,11 @@ def laid_out(run: Run, solution: Any, exact: Manufactured) -> Layout:
     return layout
 
 
-def walls(solution: Any, grid: Grid) -> Walls:
-    """Walls of the solution; none beside an edge that is pulled or prescribed, see solver/surface.py."""
-    return moving(grid, solution.walls) if solution.boundary == "moving" else box(grid, sides(solution))
+def walls(solution: Any, grid: Grid, reference: bool = False) -> Walls:
+    """Walls of the solution, at `reference` or where they are; none beside an edge that is pulled or prescribed."""
+    if solution.boundary != "moving":
+        return box(grid, sides(solution))
+    return moving(grid, solution.reference_walls if reference else solution.walls)
 
 
 def moves_grid(solution: Any) -> bool:
@@ -147,10 +149,13 @@ def moves_grid(solution: Any) -> bool:
     return open_ and not isinstance(solution, Square)
 
 
-def velocity_gradient(exact: Manufactured, X: Floats, t: float, short: float) -> Floats:
-    """Velocity gradient L = dF/dt F^-1 (P,2,2), by the central difference of the exact F over t -/+ short."""
-    rate = (exact.F(X, t + short) - exact.F(X, t - short)) / (2 * short)
-    L: Floats = rate @ np.linalg.inv(exact.F(X, t))
+def velocity_gradient(exact: Manufactured, X: Floats, t: float, short: float, reference: bool = False) -> Floats:
+    """Velocity gradient L = dF/dt F^-1 (P,2,2), by the central difference of the exact F over t -/+ short.
+
+    With respect to X it is dF/dt: the one of nodes that stay in the `reference` configuration.
+    """
+    rate: Floats = (exact.F(X, t + short) - exact.F(X, t - short)) / (2 * short)
+    L: Floats = rate if reference else rate @ np.linalg.inv(exact.F(X, t))
     return L
 
 

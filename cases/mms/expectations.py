@@ -70,6 +70,8 @@ def registered(solution: str, method: str, quantity: str) -> Expectation | None:
     order = known.orders(promise.order)[quantity]
     kept = quantity == "u" and order == promise.order
     source = f"{promise.source}; {MEASURED}" if kept and promise.source else MEASURED
+    if known.inverts:
+        return Expectation(None, stall_h=1 / known.inverts, source=source)
     if known.fails:
         return Expectation(None, failed=known.fails, source=source)
     if known.stalls:
@@ -136,7 +138,8 @@ def promised(method: str, crossing: bool) -> Expectation | None:
     """
     promise: Promise = load(METHODS, method.partition(":")[0]).promises(crossing=crossing)
     deviates = (DEVIATIONS[name].get(method) for name in LARGE)
-    if promise.order is None or (crossing and any(known and (known.stalls or known.fails) for known in deviates)):
+    ends = (known.stalls or known.fails or known.inverts for known in deviates if known)
+    if promise.order is None or (crossing and any(ends)):
         return None
     return Expectation(promise.order, source="declared by the method")
 
@@ -147,10 +150,10 @@ def crosses(solution: str) -> bool:
 
 
 def later_with_9(method: str, solution: str, expectation: Expectation | None) -> bool:
-    """Whether the stall was seen with 4 particles per cell alone."""
+    """Whether the stall, or the end of finer runs, was seen with 4 particles per cell alone."""
     return (
         expectation is not None
-        and expectation.stall is not None
+        and expectation.order is None
         and (method == "bspline3" or (method, solution) in LATER_WITH_9)
     )
 

@@ -1,7 +1,8 @@
 """Packing of particles, whether it is good enough: no empty full cell, no domain too wide, no two adjacent too unlike.
 
 A cell is full while the body covers all of it. The edge of the body is that of the layout, moved as the exact solution
-moves it; cells that it passes through are not full. Asked for in Moormann, Giridharan & Stolle 2022, section 2.1.
+moves it; cells that it passes through are not full. Methods whose weights are those of the reference positions are
+counted there. Asked for in Moormann, Giridharan & Stolle 2022, section 2.1.
 """
 
 from dataclasses import dataclass, field
@@ -47,9 +48,11 @@ class Packing(Observer):
 
     def look(self, model: Model) -> None:
         """Count now."""
-        edge = self.exact.x(self.edge.reshape(-1, 2), model.time).reshape(self.edge.shape)
+        edge = self.edge
+        if not model.basis.reference:
+            edge = self.exact.x(edge.reshape(-1, 2), model.time).reshape(edge.shape)
         full = full_cells(model.grid, edge)
-        held = counts(model.grid, model.particles.x)
+        held = counts(model.grid, model.basis.on_grid(model.particles))
         if full.any():
             fewest = int(held[full].min())
             if self.fewest is None or fewest < self.fewest:

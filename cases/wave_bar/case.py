@@ -24,7 +24,7 @@ from mpm_verify.solver.plugins import canonical as canonical_name
 __all__ = ["AXES", "QUICK", "Result", "Run"]
 
 SMALL = 1e-4  # amplitude up to which the bar is linear
-HATS = ("mpm", "gimp", "cpgimp", "cpdi", "cpdi2")  # methods whose weights are those of hats at the quarter points
+HATS = ("mpm", "gimp", "cpgimp", "cpdi", "cpdi2", "tlmpm")  # methods with weights of hats at the quarter points
 FINE = 1 / 64  # where the closed form is close enough to be held against
 QUANTITIES, NORMS, JUDGED = ("frequency",), ("relative",), (("frequency", "relative"),)
 

@@ -68,6 +68,7 @@ class Reason(StrEnum):
     FILTER = "filter"  # a filter, applied twice, filters twice
     BUDGET = "budget"  # the energy budget is that of update-stress-last, and of positions that move with the nodes
     POINTS = "points"  # forces on the edge act through points
+    REFERENCE = "reference"  # weights of the reference positions
     OTHER_RATE = "other_rate"  # smoothing does not take this rate
 
 

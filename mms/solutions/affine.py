@@ -80,8 +80,19 @@ class Affine(Square):
         tuple
             Whether a node is held, its velocity F'(t + dt/2) F^-1 x and its acceleration F'' F^-1 x, (n,2) each.
         """
-        w, dx = np.pi * self.C / self.L, float(nodes[1, 1] - nodes[0, 1])
+        w = np.pi * self.C / self.L
         inverse = np.linalg.inv(np.eye(2) + self._numbers(np.sin(w * t), 1 - np.cos(w * t)))
+        return self._held(nodes, inverse, t, dt)
+
+    def reference_walls(self, nodes: Floats, t: float, dt: float) -> tuple[NDArray[np.bool_], Floats, Floats]:
+        """Walls of a step, as `walls`, of nodes that stay at their reference positions X (n,2)."""
+        return self._held(nodes, np.eye(2), t, dt)
+
+    def _held(
+        self, nodes: Floats, inverse: NDArray[Any], t: float, dt: float
+    ) -> tuple[NDArray[np.bool_], Floats, Floats]:
+        """Walls of a step; `inverse` (2,2) takes nodes (n,2) to X."""
+        w, dx = np.pi * self.C / self.L, float(nodes[1, 1] - nodes[0, 1])
         inside = np.ones(len(nodes), dtype=bool)
         for corner in ((-dx, -dx), (-dx, dx), (dx, -dx), (dx, dx)):
             X = (nodes + corner) @ inverse.T

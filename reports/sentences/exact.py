@@ -123,6 +123,7 @@ REASONS = {
     Reason.FILTER: "through nodes and back is a filter, and no projector",
     Reason.BUDGET: "the budget is that of update-stress-last and of positions that move with the nodes",
     Reason.POINTS: "forces on the edge act through points, which balance no stress exactly",
+    Reason.REFERENCE: "weights are those of the reference positions, which no particle leaves",
     Reason.OTHER_RATE: "smoothing does not take this rate",
 }
 

@@ -90,7 +90,7 @@ class Smoothing:
         if self.of == "rate":
             return
         smoothed = p.sigma.copy()
-        smoothed[:, [0, 1, 3]] = self.smooth(context, p.x, p.sigma[:, [0, 1, 3]])
+        smoothed[:, [0, 1, 3]] = self.smooth(context, context.basis.on_grid(p), p.sigma[:, [0, 1, 3]])
         if self.into == "history":
             p.sigma[:] = smoothed
         else:

@@ -38,7 +38,8 @@ class Transfer:
         context
             Body on its grid.
         L
-            Velocity gradient (P,2,2) as a function of X (P,2); None where it is not known.
+            Velocity gradient (P,2,2) as a function of X (P,2), by x, or by X of a basis of reference positions; None
+            where it is not known.
         """
 
     def give(self, context: Context, momentum: Floats) -> None:
