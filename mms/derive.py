@@ -103,7 +103,7 @@ def derive(solution: Solution, material: Energy, rho0: float, exact: bool = Fals
 
     sigma = cauchy(P, f, d)
     zeros = {symbol: e for symbol, e in inner.items() if e.is_number}  # a diagonal F makes most terms vanish
-    P, sigma, b = ([sp.sympify(e).xreplace(zeros) for e in group] for group in (P[: d * d], sigma, b))
+    P, sigma, b = ([sp.expand_func(e).xreplace(zeros) for e in group] for group in (P[: d * d], sigma, b))
     return Fields(X, t, u, [sp.diff(e, t) for e in u], F, P, sigma, b, inner)
 
 

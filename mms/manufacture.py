@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from mpm_verify.mms.derive import Fields, Solution
     from mpm_verify.mms.exact import ExactKernel
 
+LONG = 5000  # operations of b, with its repetitions, above which it is printed in more than coordinates
 Field = Callable[[Floats, float], Floats]
 
 
@@ -112,7 +113,7 @@ class Manufactured:
 
         def source() -> str:
             f = self.forced()
-            if len(f.X) == 3:  # in coordinates alone its expressions are so long that b takes ten seconds
+            if len(f.X) == 3 or sum(e.count_ops() for e in f.b) > LONG:  # else b takes ten seconds
                 return printed((*f.X, f.t), getattr(f, name), f.inner)
             return printed((*f.X, f.t), f.full(getattr(f, name)))
 

@@ -112,7 +112,7 @@ def expected(
         return promised(method, reach > SMALL * float(plugin.upper[0] - plugin.lower[0]))
     name = split(solution)[0]
     regime = SMALL_AMPLITUDE if small(plugin) else name
-    if regime not in DEVIATIONS or method not in available(METHODS) or split(material)[0] != "neo_hookean":
+    if regime not in DEVIATIONS or method not in available(METHODS) or not elastic(material):
         return None
     if regime == name and not crosses(name):  # what is registered holds for the small amplitude of its default
         return promised(method, True) if quantity == "u" else None
@@ -161,6 +161,12 @@ def small(solution: Any) -> bool:
     In the cells that the edge of a ring cuts, particles of classical MPM are inverted whatever the amplitude.
     """
     return isinstance(solution, Square) and solution.amplitude <= SMALL
+
+
+def elastic(material: str) -> bool:
+    """Whether what is registered of neo-Hookean solids holds of a material: one of this package, of finite strain."""
+    model: Any = None if is_file(material) else create(MATERIALS, material)
+    return model is not None and model.energy is not None and not model.small_strain
 
 
 def same(one: str, other: str) -> bool:
