@@ -74,6 +74,11 @@ class Material:
         return module.rpartition(".")[2] if module.startswith(f"{MATERIALS}.") else ""
 
     @property
+    def strays(self) -> bool:
+        """Whether its rate makes it another solid than the one of the energy that it states."""
+        return False
+
+    @property
     def friction_angle(self) -> float | None:
         """Angle of friction in degrees; None without friction."""
         return None

@@ -15,6 +15,7 @@ from mpm_verify.solver.elastic import Elastic
 from mpm_verify.solver.material.hencky import energy
 from mpm_verify.solver.material.hypoelastic import respond
 from mpm_verify.solver.material.neo_hookean import NeoHookean
+from mpm_verify.solver.plugins import RATES, available
 from mpm_verify.solver.rate_material import RateMaterial
 from mpm_verify.solver.state import Floats
 
@@ -56,6 +57,11 @@ class HenckyRate(RateMaterial, Elastic):
     def convected(self) -> bool:
         """Whether it is the neo-Hookean solid, by the rate that convects stress and without a lateral strain."""
         return self.rate == "truesdell" and self.nu == 0
+
+    @property
+    def strays(self) -> bool:
+        """Whether its rate has no energy; a negative control, or a rate of a user's file, claims to have it."""
+        return self.rate in available(RATES) and self.rate != "logarithmic" and not self.convected
 
     def energy(self, F: Any, log: Callable[[Any], Any]) -> Any:
         """Energy W per initial volume that the right rate gives; F is 3 x 3, of numbers or symbols."""
