@@ -1,5 +1,6 @@
 """Hencky solid: closed forms at 30 digits, the undeformed state, and its rate form with the rates that are exact."""
 
+from pathlib import Path
 from typing import Any
 
 import mpmath as mp
@@ -8,11 +9,19 @@ import pytest
 import sympy as sp
 from fixtures_rates import started, step_to, turned
 
+from mpm_verify.cases.harness.build import Asked, build
+from mpm_verify.cases.judging.order import Expectation, Level, Outcome, judge
+from mpm_verify.cases.judging.records import ReasonCode
+from mpm_verify.cases.mms import rates
+from mpm_verify.cases.mms.execute import execute
+from mpm_verify.cases.mms.expectations import expected
+from mpm_verify.cases.mms.rates import SHEARED, table
+from mpm_verify.cases.mms.run import Run
 from mpm_verify.mms.manufacture import manufacture
 from mpm_verify.solver.log_spread import written
 from mpm_verify.solver.log_spread_symbol import SpreadSquared
 from mpm_verify.solver.material.hencky import NEAR, flatness, spread_squared
-from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS, create
+from mpm_verify.solver.plugins import MATERIALS, NEGATIVE_CONTROLS, SOLUTIONS, available, canonical, create
 from mpm_verify.solver.state import Floats, Particles
 
 HENCKY: Any = create(MATERIALS, "hencky")
@@ -72,6 +81,32 @@ def test_a_naive_arcosh_fails_near_one() -> None:
         assert np.isnan(sp.lambdify(y, slope, "numpy")(np.float64(0.0)))
     assert sp.diff(SpreadSquared(y, 0), y).subs(y, 0).expand(func=True) == 2
     assert sp.diff(SpreadSquared(y, 0), y, 2).subs(y, 0).expand(func=True) == sp.Rational(-2, 3)
+
+
+STREAM = """\"\"\"Stream function in a clamped square: its linear part has no divergence.\"\"\"
+import sympy as sp
+
+def displacement(X, t, A=0.01):
+    psi = sp.sin(sp.pi * X[0]) ** 2 * sp.sin(sp.pi * X[1]) ** 2
+    return A * sp.Matrix([sp.diff(psi, X[1]), -sp.diff(psi, X[0])]) * (1 - sp.cos(100 * sp.pi * t)) / 2
+
+def domain():
+    return {"lower": (0, 0), "upper": (1, 1), "duration": 0.02, "speed": 100, "order": 2}
+"""
+
+
+def test_the_stable_courant_number_of_what_is_nearly_incompressible(tmp_path: Path) -> None:
+    """The limit is told, 0.241, and the number that is typed, 0.7 of it, is one that the limit does not refuse."""
+    (tmp_path / "stream.py").write_text(STREAM)
+    values = {"solution": (str(tmp_path / "stream.py"),), "cells": (8, 16), "ppc": (4,)}
+    for nu, limit, typed in (("0.49", "0.241", "0.169"), ("0.499", "0.0773", "0.0541")):
+        model = (f"neo_hookean:nu={nu}",)
+        with pytest.raises(ValueError, match=f"limit of {limit}, and nearly incompressible .* {typed};") as told:
+            build(Asked("mms", values | {"material": model}), "verify mms")
+        assert f"take --courant {typed}" in str(told.value)
+        assert build(Asked("mms", values | {"material": model, "courant": (float(typed),)}), "verify mms").runs
+    with pytest.raises(ValueError, match=r"limit of 0.241; .* take --courant 0.241"):  # F-bar relieves it
+        build(Asked("mms", values | {"material": ("neo_hookean:nu=0.49",), "smoothing": ("fbar",)}), "verify mms")
 
 
 def test_body_force_is_finite_where_nothing_is_deformed() -> None:
@@ -174,3 +209,72 @@ def test_work_of_a_closed_path_is_that_of_its_energy() -> None:
     whole = np.eye(3)
     whole[:2, :2] = path(1.0)
     assert p.work[0].mean() == pytest.approx(float(HENCKY.energy(whole.tolist(), np.log)), rel=2e-5)
+
+
+# ---- what is registered, and the negative controls through MMS with rotation
+
+
+def registered(material: str, solution: str, quantity: str = "u") -> Expectation | None:
+    names = canonical(SOLUTIONS, solution), canonical(MATERIALS, material)
+    return expected("cpdi", *names, 4, quantity, "rms")
+
+
+def test_what_is_registered_of_hencky_solids() -> None:
+    """Orders of neo-Hookean solids; a stall on the limit of another rate; a control is taken for the right rate."""
+    for material in ("hencky", "hencky_rate", "hencky_rate:rate=truesdell,nu=0", "hencky_rate:rate=printed"):
+        for solution in ("swirl", "clamped_shear"):
+            found = registered(material, solution)
+            assert found is not None
+            assert found.order == 2
+    for rate in ("green_naghdi", "jaumann"):
+        found = registered(f"hencky_rate:rate={rate}", SHEARED)
+        assert found is not None
+        assert (found.kind, found.within, len(found.recorded)) == ("stalls", 0.01, 6)
+        straight = registered(f"hencky_rate:rate={rate}", "axis_aligned")
+        assert straight is not None
+        assert straight.order == 2
+        assert registered(f"hencky_rate:rate={rate}", "swirl") is None  # no limit was measured
+    assert registered("hencky_rate:rate=truesdell", "axis_aligned") is None
+    right, control = registered("hencky_rate", SHEARED), registered("hencky_rate:rate=strain_end", SHEARED)
+    assert right is not None
+    assert right == control
+    assert len(right.recorded) == 6
+    assert registered("hypoelastic", "swirl") is None
+
+
+def verdict(material: str, solution: str, errors: list[float]) -> tuple[Outcome, ReasonCode]:
+    """Verdict on u of cells 8, 12, 16, 24, 32 and, with six errors, 48."""
+    expectation = registered(material, solution)
+    assert expectation is not None
+    levels = [Level(1 / n, (e,)) for n, e in zip((8, 12, 16, 24, 32, 48), errors, strict=False)]
+    found = judge(levels, expectation, floor=1e-14, dt_halved=errors[-1])
+    return found.outcome, found.reason.code
+
+
+@pytest.mark.parametrize(("material", "solution"), [name[:2] for name in table()])
+def test_recorded_errors_are_as_registered_and_others_are_not(material: str, solution: str) -> None:
+    rows = [errors["u"] for _, errors in table()[material, solution, "cpdi", 4]]
+    assert verdict(material, solution, rows)[0] is Outcome.PASS
+    assert verdict(material, solution, [1.03 * error for error in rows]) == (Outcome.FAIL, ReasonCode.MAGNITUDE)
+
+
+def test_the_limit_of_another_rate_is_no_order_of_the_right_one() -> None:
+    """Floors of 3.9 and 9.8 % of u: as if of the logarithmic rate both are refused, by magnitude and without it."""
+    for rate in ("green_naghdi", "jaumann"):
+        rows = [errors["u"] for _, errors in table()[f"hencky_rate:rate={rate}", SHEARED, "cpdi", 4]]
+        assert verdict("hencky_rate", SHEARED, rows)[0] is Outcome.FAIL
+        levels = [Level(1 / n, (e,)) for n, e in zip((8, 12, 16, 24, 32, 48), rows, strict=True)]
+        plain = judge(levels, Expectation(2.0), floor=1e-14, dt_halved=rows[-1])
+        assert plain.outcome is Outcome.FAIL
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("rate", ["logarithmic", *available(NEGATIVE_CONTROLS)])
+def test_each_negative_control_is_refused_by_its_errors(rate: str) -> None:
+    """One or two runs, v in rms: off the recorded errors of the rate that it is taken for, or inverted."""
+    known = {one.h: one for one in rates.recorded("hencky_rate", SHEARED, "cpdi", 4, "v")}
+    away = []
+    for cells in (8, 12):
+        result = execute(Run("cpdi", SHEARED, canonical(MATERIALS, f"hencky_rate:rate={rate}"), cells, 4))[0]
+        away.append(abs(known[1 / cells].ratio(result.errors["v"]["rms"]) - 1) if result.errors else np.inf)
+    assert max(away) < 1e-3 if rate == "logarithmic" else max(away) > 0.03

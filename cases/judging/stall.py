@@ -45,7 +45,7 @@ class CauseCode(StrEnum):
     TIME_STEP = "time_step"  # [change]
     ROUND_OFF = "round_off"  # [times: the finest error over its floor]
     LOCKING = "locking"  # too many constraints on the volume [ratio, cells; change, with a smoothed volume ratio]
-    OTHER_SOLID = "other_solid"  # the material converges, to another solution than the one of its energy
+    OTHER_SOLID = "other_solid"  # than that of the problem, by the rate of the material [error, size of the motion]
     DAMPING = "damping"  # that the problem does not have [alpha; change, without it]
 
 
@@ -156,7 +156,7 @@ def explain(m: Measured) -> Stall | None:
         end = Cause(CauseCode.FAILED_RUN, Finding.SHOWN, 1.0, ended=m.ended)
         return Stall(None, last, orders[-1] if orders else None, before, (end, *_crossings_alone(m)), m.ended)
     others = [_particles(m), _gaps(m), _time_step(m), _floor(m), *([_damping(m)] if m.damping else [])]
-    others += [*([_locking(m)] if m.stiffness >= STIFF else []), *([_other_solid()] if m.strays else [])]
+    others += [*([_locking(m)] if m.stiffness >= STIFF else []), *([_other_solid(m)] if m.strays else [])]
     causes = [_crossings(m, max(c.weight for c in others)), *others]
     rank = list(Finding)
     causes.sort(key=lambda c: (-(c.weight >= NAMED), rank.index(c.finding), -c.weight))
@@ -255,9 +255,9 @@ def _locking(m: Measured) -> Cause:
     return Cause(CauseCode.LOCKING, Finding.PRESENT if weight >= PART else Finding.EXCLUDED, weight, numbers)
 
 
-def _other_solid() -> Cause:
+def _other_solid(m: Measured) -> Cause:
     """Material in rate form whose rate has no energy: what the errors converge to is the distance of two solids."""
-    return Cause(CauseCode.OTHER_SOLID, Finding.PRESENT, 1.0)
+    return Cause(CauseCode.OTHER_SOLID, Finding.PRESENT, 1.0, {"error": m.errors[-1], "size": m.size})
 
 
 def _crossings(m: Measured, explained: float) -> Cause:

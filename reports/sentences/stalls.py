@@ -23,7 +23,7 @@ UNMEASURED = {
     CauseCode.ROUND_OFF: "no round-off floor is known",
     CauseCode.DAMPING: "the run has none",
     CauseCode.LOCKING: "the material can be compressed",
-    CauseCode.OTHER_SOLID: "with its rate the stress is no function of F, and the problem is that of an energy",
+    CauseCode.OTHER_SOLID: "the material is the one of the problem",
 }
 
 
@@ -126,8 +126,14 @@ def _locking(n: dict[str, float], peer: Peer | None) -> str:
     return f"{told}, and with a smoothed volume ratio the finest error changes by {words.percent(n['change'], 1, '+')}"
 
 
+def _other_solid(n: dict[str, float], peer: Peer | None) -> str:
+    told = "with its rate the stress is no function of F, and the problem is that of an energy"
+    return f"{told}; the finest error is {words.percent(n['error'] / n['size'], 1)} of u" if n["size"] else told
+
+
 MEASURED = {
     CauseCode.LOCKING: _locking,
+    CauseCode.OTHER_SOLID: _other_solid,
     CauseCode.CROSSINGS: _crossings,
     CauseCode.QUADRATURE: _quadrature,
     CauseCode.GAPS: _gaps,

@@ -20,7 +20,9 @@ from mpm_verify.solver.state import Floats, Particles
 Of = Literal["rate", "stress", "both"]
 Where = Literal["cell", "node"]
 Into = Literal["force", "history"]
-RATES = ("green_naghdi", "jaumann")  # their rotations are those of F; a stretched frame would need the smoothed F too
+# Their frames turn alone, and the first two by F as it is, the third half by the smoothed strain; one that stretches
+# with F would need the smoothed F at the end of the step too.
+RATES = ("green_naghdi", "jaumann", "logarithmic")
 
 
 @dataclass(frozen=True)
