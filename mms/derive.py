@@ -19,6 +19,7 @@ from mpm_verify.mms.energy import Energy, check_energy
 from mpm_verify.solver.state import Floats
 
 Expressions = list[sp.Expr]
+LONG = 5000  # operations of b with its repetitions; a neo-Hookean solid has 432 in two dimensions, 9315 in three
 
 
 class Solution(Protocol):
@@ -49,6 +50,11 @@ class Fields:
     sigma: Expressions
     b: Expressions
     inner: dict[sp.Symbol, sp.Expr]
+
+    @property
+    def long(self) -> bool:
+        """Whether expressions in coordinates and t alone are so long that what is made of them takes minutes."""
+        return len(self.X) == 3 or sum(sp.sympify(e).count_ops() for e in self.b) > LONG
 
     def full(self, expressions: Expressions) -> Expressions:
         """Write expressions in coordinates and t alone."""

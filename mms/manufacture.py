@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from mpm_verify.mms.derive import Fields, Solution
     from mpm_verify.mms.exact import ExactKernel
 
-LONG = 5000  # operations of b, with its repetitions, above which it is printed in more than coordinates
 Field = Callable[[Floats, float], Floats]
 
 
@@ -113,7 +112,7 @@ class Manufactured:
 
         def source() -> str:
             f = self.forced()
-            if len(f.X) == 3 or sum(e.count_ops() for e in f.b) > LONG:  # else b takes ten seconds
+            if f.long:
                 return printed((*f.X, f.t), getattr(f, name), f.inner)
             return printed((*f.X, f.t), f.full(getattr(f, name)))
 
