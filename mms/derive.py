@@ -19,6 +19,7 @@ from mpm_verify.mms.energy import Energy, check_energy
 from mpm_verify.solver.state import Floats
 
 Expressions = list[sp.Expr]
+LONG = 5000  # operations of b with its repetitions; a neo-Hookean solid has 432 in two dimensions, 9315 in three
 
 
 class Solution(Protocol):
@@ -49,6 +50,11 @@ class Fields:
     sigma: Expressions
     b: Expressions
     inner: dict[sp.Symbol, sp.Expr]
+
+    @property
+    def long(self) -> bool:
+        """Whether expressions in coordinates and t alone are so long that what is made of them takes minutes."""
+        return len(self.X) == 3 or sum(sp.sympify(e).count_ops() for e in self.b) > LONG
 
     def full(self, expressions: Expressions) -> Expressions:
         """Write expressions in coordinates and t alone."""
@@ -103,7 +109,7 @@ def derive(solution: Solution, material: Energy, rho0: float, exact: bool = Fals
 
     sigma = cauchy(P, f, d)
     zeros = {symbol: e for symbol, e in inner.items() if e.is_number}  # a diagonal F makes most terms vanish
-    P, sigma, b = ([sp.sympify(e).xreplace(zeros) for e in group] for group in (P[: d * d], sigma, b))
+    P, sigma, b = ([sp.expand_func(e).xreplace(zeros) for e in group] for group in (P[: d * d], sigma, b))
     return Fields(X, t, u, [sp.diff(e, t) for e in u], F, P, sigma, b, inner)
 
 

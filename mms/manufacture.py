@@ -112,7 +112,7 @@ class Manufactured:
 
         def source() -> str:
             f = self.forced()
-            if len(f.X) == 3:  # in coordinates alone its expressions are so long that b takes ten seconds
+            if f.long:
                 return printed((*f.X, f.t), getattr(f, name), f.inner)
             return printed((*f.X, f.t), f.full(getattr(f, name)))
 

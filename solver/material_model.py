@@ -1,7 +1,8 @@
 """Contract of a constitutive model, and what it states of itself, so that no study has to ask for its class.
 
 A model is of one of two forms: a function of F with its `energy` (solver/elastic.py), or in rate form with one kernel
-`respond` (solver/rate_material.py). What a model does not have is None, or empty.
+`respond` (solver/rate_material.py); one with both has in rate form, with the right rate, the stress of its energy. What
+a model does not have is None, or empty.
 """
 
 from abc import abstractmethod
@@ -23,6 +24,8 @@ class Material:
         ``energy(F, log)``: energy W per initial volume of a 3 x 3 F of numbers or symbols.
     respond
         Kernel of signature solver.objective.RESPOND.
+    kirchhoff
+        Whether the stress that `respond` sees is J sigma.
     moduli
         ``moduli(s)``: shear and bulk modulus at the mean stress s in the plane, compression positive, of a model whose
         stiffness follows it.
@@ -51,6 +54,7 @@ class Material:
 
     energy: Callable[[Any, Callable[[Any], Any]], Any] | None = None
     respond: ClassVar[Callable[..., Any] | None] = None
+    kirchhoff: ClassVar[bool] = False
     moduli: Callable[[float], tuple[float, float]] | None = None
     stored_energy: Callable[[Floats], Floats] | None = None
     memory: ClassVar[tuple[str, ...]] = ()
@@ -68,6 +72,11 @@ class Material:
         """Name of the file in solver/material, the word on the command line; empty for a model of no file."""
         module = type(self).__module__
         return module.rpartition(".")[2] if module.startswith(f"{MATERIALS}.") else ""
+
+    @property
+    def strays(self) -> bool:
+        """Whether its rate makes it another solid than the one of the energy that it states."""
+        return False
 
     @property
     def friction_angle(self) -> float | None:

@@ -28,11 +28,14 @@ class Rate:
     ----------
     order
         Order in time of the stress, 0 if it does not converge.
+    convects
+        Whether it carries the stress by F, and divides it by the change of volume.
     unrotate, rotate
         Kernels of signatures UNROTATE and ROTATE.
     """
 
     order: ClassVar[float]
+    convects: ClassVar[bool] = False
     unrotate: ClassVar[Function]
     rotate: ClassVar[Function]
 

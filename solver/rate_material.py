@@ -1,5 +1,6 @@
 """Contract of a material in rate form: one kernel that responds to strain increments, an objective rate around it."""
 
+from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import cache
 from typing import ClassVar, cast
@@ -7,6 +8,7 @@ from typing import ClassVar, cast
 import numpy as np
 
 from mpm_verify.solver._jit import Function
+from mpm_verify.solver.kirchhoff import weighted
 from mpm_verify.solver.material_model import Material
 from mpm_verify.solver.objective import Rate, integrate
 from mpm_verify.solver.plugins import NEGATIVE_CONTROLS, RATES, USUAL_RATE, available, load
@@ -74,10 +76,12 @@ class RateMaterial(Material):
         if p.F_old.shape[1:] != (4,) or p.history.shape[1:] != (len(self.memory),):
             raise ValueError(f"{type(self).__name__} must start the particles before it updates them")
         F_smoothed = p.F if F_smoothed is None else F_smoothed
-        integrate(
-            frame.unrotate, frame.rotate, self.respond, self.constants(), p.F_old, F_smoothed, p.F, p.sigma,
-            p.history, p.work
-        )  # fmt: skip
+        convects = getattr(frame, "convects", False)
+        with weighted(p, convects) if self.kirchhoff else nullcontext():
+            integrate(
+                frame.unrotate, frame.rotate, self.respond, self.constants(), p.F_old, F_smoothed, p.F, p.sigma,
+                p.history, p.work
+            )  # fmt: skip
 
 
 @cache

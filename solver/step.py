@@ -124,6 +124,10 @@ def update_stress(model: Model, x: Floats) -> None:
     F_smoothed = model.smoothing.strain(model, x) if model.smoothing else None
     if F_smoothed is None:
         model.material.update(p, model.dt)
+    elif model.material.rate is None:
+        F, p.F = p.F, F_smoothed  # for the stress alone
+        model.material.update(p, model.dt)
+        p.F = F
     else:
         cast("RateMaterial", model.material).update(p, model.dt, F_smoothed)
     if p.sigma.shape != (len(p), 4):  # a kernel would read beyond it

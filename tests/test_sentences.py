@@ -193,7 +193,17 @@ def stalled() -> Any:
     errors = (6.4e-3, 1.6e-3, 6e-4, 4e-4)
     found = explain(
         Measured(
-            (8, 16, 32, 64), errors, (2.0, 4.0, 8.0, 16.0), (0.2,) * 4, 4, 1e-14, 4e-4, (9, (5e-4, 3e-4)), damping=0.1
+            (8, 16, 32, 64),
+            errors,
+            (2.0, 4.0, 8.0, 16.0),
+            (0.2,) * 4,
+            4,
+            1e-14,
+            4e-4,
+            (9, (5e-4, 3e-4)),
+            damping=0.1,
+            stiffness=5e3,
+            strays=True,
         )
     )
     assert found is not None

@@ -168,6 +168,43 @@ def test_round_off(floor: float, named: bool) -> None:
     assert (CauseCode.ROUND_OFF in named_in(found)) == named
 
 
+def test_locking_of_a_nearly_incompressible_material() -> None:
+    """Named by bulk over shear modulus until cells outgrow it; shown by a smoothed volume ratio; never without both."""
+    soft = stall(stiffness=2.2, **crossed_once())
+    assert not [one for one in soft.causes if one.code is CauseCode.LOCKING]
+    stiff = stall(stiffness=5000.0, **crossed_once())
+    assert stiff.named[0].code is CauseCode.LOCKING
+    assert stiff.named[0].finding is Finding.PRESENT
+    assert cause(stiff, CauseCode.CROSSINGS).weight < 0.25  # what is left
+    assert cause(stall(stiffness=50.0), CauseCode.LOCKING).finding is Finding.EXCLUDED  # on 64 cells
+    shown = cause(stall(stiffness=50.0, relieved=AT_64), CauseCode.LOCKING)
+    assert (shown.finding, shown.weight) == (Finding.SHOWN, pytest.approx(0.75))
+    worse = cause(stall(stiffness=5000.0, relieved=8 * AT_64), CauseCode.LOCKING)
+    assert (worse.finding, worse.numbers["change"]) == (Finding.PRESENT, pytest.approx(1.0))
+    for one in (stiff.named[0], shown):
+        assert "bulk modulus" in sentences.measured(one)
+
+
+def test_an_order_that_locking_keeps_low_is_a_stall_without_a_fall() -> None:
+    """Orders 1.08 and 1.37 of a Poisson's ratio of 0.499 rise, and are those of no method."""
+    locked = Measured((8, 16, 32), (6.8e-3, 3.2e-3, 1.25e-3), (0.0, 0.4, 1.1), (None,) * 3, 4)
+    assert explain(locked) is None
+    found = explain(replace(locked, stiffness=500.0))
+    assert found is not None
+    assert [one.code for one in found.named] == [CauseCode.LOCKING]
+
+
+def test_another_solid_explains_all_of_it() -> None:
+    found = stall(strays=True, **crossed_once())
+    assert [one.code for one in found.named] == [CauseCode.OTHER_SOLID]
+    assert "no function of F" in sentences.measured(found.named[0])
+
+
+def crossed_once() -> dict[str, object]:
+    """Faces crossed on each level."""
+    return {"crossings": (0.5, 1.0, 1.0, 1.0)}
+
+
 def test_damping_that_the_problem_does_not_have() -> None:
     """Without another run it is present with its own size; one without it shows it, or excludes it."""
     crossed = {"crossings": (16.0,) * 4}

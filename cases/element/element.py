@@ -78,15 +78,22 @@ class Element:
         count = len(increments)
         strains = state.strain + increments
         if self.material.respond is not None:
-            rows, memories = np.tile(state.sigma, (count, 1)), np.tile(state.history, (count, 1))
+            rows = np.tile(state.sigma * self.weight(state.strain), (count, 1))
+            memories = np.tile(state.history, (count, 1))
             respond = plane if increments.shape[1] == PLANE else respond_in_space
             respond(self.material, self.constants, rows, increments, memories)
+            rows /= self.weight(strains)[:, None]
         else:
             p = Particles(np.zeros((count, 2)), np.ones(count), np.ones(count), np.zeros((count, 0)))
             p.F = np.ascontiguousarray(stretch(strains))
             self.material.update(p, 1.0)
             rows, memories = p.sigma, np.zeros((count, 0))
         return [State(*parts) for parts in zip(strains, rows, memories, strict=True)]
+
+    def weight(self, strain: Floats) -> Floats:
+        """Stress that the kernel of a material in rate form sees, over the Cauchy stress, at strains (...,3 or 4)."""
+        volume = strain[..., 0] + strain[..., 1] + strain[..., PLANE:].sum(axis=-1)
+        return np.asarray(np.exp(self.material.kirchhoff * volume))
 
     def solve(self, state: State, control: Control, guess: Floats, scale: Floats, corner: bool = False) -> State:
         """State after one step under a control; `scale` is the size of its residuals. Raises ElementFailed.

@@ -19,7 +19,7 @@ from mpm_verify.cases.exact.body import (
     shaken,
 )
 from mpm_verify.cases.exact.groups import GROUPS
-from mpm_verify.mms.constitutive.driver import random
+from mpm_verify.mms.constitutive.driver import drive, random
 from mpm_verify.mms.constitutive.tested import FAILED, Part, Reason, Tested, attempt, bound, not_asked, off
 from mpm_verify.solver.plugins import SMOOTHINGS, available, create
 from mpm_verify.solver.smoothing._base import RATES
@@ -34,9 +34,12 @@ PARTS = {"volumetric": (0,), "deviatoric": (1, 2), "full": (0, 1, 2)}  # of (xx 
 def tests(subject: Subject) -> list[Tested]:
     """Every smoothing with each projection, for a material that smoothing takes."""
     names, rate = [name for name in available(SMOOTHINGS) if name in (*PARTS, "fbar")], subject.material.rate
+    if rate is None:
+        of_functions = attempt("smoothing_ratio fbar", Part.SMOOTHING, partial(ratio_of_F, subject))
+        rest = [test for test in GROUPS["smoothing"] if test != "smoothing_ratio"]
+        return of_functions + [not_asked(test, Part.SMOOTHING, Reason.NO_RATE_FORM) for test in rest]
     if rate not in RATES:
-        reason = Reason.NO_RATE_FORM if rate is None else Reason.OTHER_RATE
-        return [not_asked(test, Part.SMOOTHING, reason) for test in GROUPS["smoothing"]]
+        return [not_asked(test, Part.SMOOTHING, Reason.OTHER_RATE) for test in GROUPS["smoothing"]]
     found: list[Tested] = []
     for where in PROJECTIONS:
         found += attempt(f"smoothing_means {where}", Part.SMOOTHING, partial(projected, subject, where))
@@ -128,6 +131,23 @@ def ratio(subject: Subject) -> Tested:
     expected = np.sqrt(1 + smoothing.beta * (mean / step - 1))[:, None, None] * now
     return Tested("smoothing_ratio fbar", FAILED if found is None else off(found, expected, 1.0), bound(SUMMED),
                   Part.SMOOTHING)  # fmt: skip
+
+
+def ratio_of_F(subject: Subject) -> list[Tested]:
+    """F-bar of a function of F: the stress after a step is that of F with the projected det F, by initial volumes."""
+    found = []
+    for where in PROJECTIONS:
+        model = smoothed(subject, f"fbar:where={where}")
+        advance(model, rest)
+        p = model.particles
+        H, V0 = fractions(model, where), p.V0[:, None]
+        volume = H.T @ V0
+        nodes = np.divide(H.T @ (V0 * p.J[:, None]), volume, out=np.zeros_like(volume), where=volume > 0)
+        bar = np.sqrt((H @ nodes)[:, 0] / p.J)[:, None, None] * p.F
+        known = drive(subject.material, [bar], np.zeros_like(p.sigma)).sigma
+        name = f"smoothing_ratio fbar {where}"
+        found.append(Tested(name, off(p.sigma, known, subject.stress), bound(SUMMED), Part.SMOOTHING))
+    return found
 
 
 def uniform(subject: Subject, name: str, where: str) -> Tested:

@@ -87,6 +87,16 @@ class RunRecord:
         return 0.0
 
     @property
+    def stiffness(self) -> float:
+        """Ratio of bulk to shear modulus, where the volume of each particle is held; 0: not known, or smoothed."""
+        return 0.0
+
+    @property
+    def strays(self) -> bool:
+        """Whether the material is another solid than the one that the problem was made for."""
+        return False
+
+    @property
     def digest(self) -> str:
         """Name of the Result: hash of the parameters and of all that computes the run, 16 hex digits."""
         return self.named()

@@ -1,6 +1,6 @@
 """Verdicts from Results: which levels belong to which planned quantity, and what the order rule says of them."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -131,16 +131,22 @@ def _measured(found: Finding, known: Mapping[Head, Series], results: Results, pe
         plan.expectation.below if plan.expectation and plan.expectation.order is not None else BELOW,
         plan.run.damping_outside,
         max((result.scale.get(plan.quantity, 0.0) for _, result in done), default=0.0),
-        _undamped(series, known, results, cells),
+        _twin(series, known, results, cells, "damping", lambda run: run.damping_outside),
+        series.first.stiffness,
+        _twin(series, known, results, cells, "smoothing", lambda run: run.stiffness),
+        series.first.strays,
     )
 
 
-def _undamped(series: Series, known: Mapping[Head, Series], results: Results, cells: Sequence[int]) -> float | None:
-    """Error of the finest of `cells` in the refinement that differs in nothing but that it is not damped."""
-    if not (series.first.damping_outside and cells):
+def _twin(
+    series: Series, known: Mapping[Head, Series], results: Results, cells: Sequence[int], name: str,
+    has: Callable[[Run], float],
+) -> float | None:  # fmt: skip
+    """Error of the finest of `cells` in the refinement that differs in one field alone, and `has` not what this has."""
+    if not (has(series.first) and cells):
         return None
-    mine = without("damping", series.head)
-    twins = [s for key, s in known.items() if without("damping", key) == mine and not s.first.damping_outside]
+    mine = without(name, series.head)
+    twins = [s for key, s in known.items() if without(name, key) == mine and not has(s.first)]
     found = [error(run, results, *STALLS) for twin in twins for run in twin.runs if run.cells == cells[-1]]
     return found[0] if found else None
 

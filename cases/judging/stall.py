@@ -21,6 +21,8 @@ NAMED, PART = 0.5, 0.25  # fractions of the excess
 CLEAR = 100.0  # times the round-off floor, as in the order rule
 SPACING = 0.02  # gap between domains, in particle spacings, below which it is none
 FOLLOWS = 0.5  # the excess grows with the crossings: least power
+STIFF = 20.0  # bulk over shear modulus from which locking is asked for: a Poisson's ratio of 0.476
+OUTGROWN = 0.25  # bulk over shear modulus, over the square of the cells, at which locking is half of the excess
 ALIKE = 0.25  # relative difference of crossings that are as many
 
 
@@ -42,6 +44,8 @@ class CauseCode(StrEnum):
     GAPS = "gaps"  # and overlaps between domains [gap, gap_first, cells_first]
     TIME_STEP = "time_step"  # [change]
     ROUND_OFF = "round_off"  # [times: the finest error over its floor]
+    LOCKING = "locking"  # too many constraints on the volume [ratio, cells; change, with a smoothed volume ratio]
+    OTHER_SOLID = "other_solid"  # than that of the problem, by the rate of the material [error, size of the motion]
     DAMPING = "damping"  # that the problem does not have [alpha; change, without it]
 
 
@@ -62,7 +66,9 @@ class Measured:
     `gaps` in particle spacings, None for methods that know points only. `halved` is the finest error with half the time
     step, `other` another particle count and the errors of the finest levels with it. `ended`: the next finer run, if it
     failed. `damping` is the fraction of the force that damping takes which the problem does not have, `size` that of
-    the exact quantity, and `undamped` the finest error without damping.
+    the exact quantity, and `undamped` the finest error without damping. `stiffness` is the bulk modulus over the shear
+    modulus, 0 where it is not known or the volume ratio is smoothed, `relieved` the finest error where it is; `strays`
+    says whether the material is another solid than the one that the problem was made for.
     """
 
     cells: tuple[int, ...]
@@ -80,6 +86,9 @@ class Measured:
     damping: float = 0.0
     size: float = 0.0
     undamped: float | None = None
+    stiffness: float = 0.0
+    relieved: float | None = None
+    strays: bool = False
 
     @property
     def orders(self) -> list[float]:
@@ -147,6 +156,7 @@ def explain(m: Measured) -> Stall | None:
         end = Cause(CauseCode.FAILED_RUN, Finding.SHOWN, 1.0, ended=m.ended)
         return Stall(None, last, orders[-1] if orders else None, before, (end, *_crossings_alone(m)), m.ended)
     others = [_particles(m), _gaps(m), _time_step(m), _floor(m), *([_damping(m)] if m.damping else [])]
+    others += [*([_locking(m)] if m.stiffness >= STIFF else []), *([_other_solid(m)] if m.strays else [])]
     causes = [_crossings(m, max(c.weight for c in others)), *others]
     rank = list(Finding)
     causes.sort(key=lambda c: (-(c.weight >= NAMED), rank.index(c.finding), -c.weight))
@@ -154,12 +164,13 @@ def explain(m: Measured) -> Stall | None:
 
 
 def stalls(m: Measured) -> bool:
-    """Whether the finest local order is too low and has fallen."""
+    """Whether the finest local order is too low and has fallen, or is that of locking, which grids have to outgrow."""
     orders = m.orders
     if len(orders) < len(m.cells) - 1 or not orders:  # an error of zero
         return False
     fell = len(orders) > 1 and orders[-1] <= max(orders[:-1]) - DROP
-    return orders[-1] < m.order - m.below and (fell or orders[-1] < FLAT)
+    locks = m.stiffness >= STIFF and _locking(m).weight >= PART
+    return orders[-1] < m.order - m.below and (fell or locks or orders[-1] < FLAT)
 
 
 def _fraction(m: Measured, removed: float) -> float:
@@ -226,6 +237,27 @@ def _damping(m: Measured) -> Cause:
     change = m.undamped / m.errors[-1] - 1
     weight = _fraction(m, -change * m.errors[-1])
     return Cause(CauseCode.DAMPING, _judged(weight), weight, numbers | {"change": change})
+
+
+def _locking(m: Measured) -> Cause:
+    """Locking: particles hold the volume at more points than there are nodes to move, so that shear bends it too.
+
+    Its error grows with the bulk over the shear modulus, and cells outgrow it: with Poisson's ratios of 0.49 and 0.499
+    by 14 and 45, twice the root. Of u that was measured on solutions with pressure, see docs/materials.md.
+    """
+    numbers = {"ratio": m.stiffness, "cells": float(m.cells[-1])}
+    weight, shown = m.stiffness / (m.stiffness + OUTGROWN * m.cells[-1] ** 2), 0.0
+    if m.relieved is not None:  # a smoothed volume ratio has an error of its own: what it does not help is not excluded
+        numbers["change"] = m.relieved / m.errors[-1] - 1
+        shown = min(1.0, max(0.0, -numbers["change"]))
+    if shown >= max(PART, weight):
+        return Cause(CauseCode.LOCKING, Finding.SHOWN, shown, numbers)
+    return Cause(CauseCode.LOCKING, Finding.PRESENT if weight >= PART else Finding.EXCLUDED, weight, numbers)
+
+
+def _other_solid(m: Measured) -> Cause:
+    """Material in rate form whose rate has no energy: what the errors converge to is the distance of two solids."""
+    return Cause(CauseCode.OTHER_SOLID, Finding.PRESENT, 1.0, {"error": m.errors[-1], "size": m.size})
 
 
 def _crossings(m: Measured, explained: float) -> Cause:

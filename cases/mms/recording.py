@@ -1,8 +1,9 @@
-"""Recording of errors: the tables recorded.csv and recorded_axes.csv of this folder, made anew by `make recorded`.
+"""Recording of errors: the tables recorded*.csv of this folder, made anew by `make recorded`.
 
 Each row of the first is one run of the usual scheme (FLIP, a Courant number of 0.4, staggered start) with its errors in
 rms, or the same with the stress updated last after a second mapping of velocities (musl), which another code may do.
-Each row of the second is one of CPDI in which an axis is not as usual, see variants.py.
+Each row of recorded_axes.csv is one of CPDI in which an axis is not as usual, see variants.py; of recorded_rates.csv
+one of a Hencky solid, see rates.py.
 """
 
 import csv
@@ -13,6 +14,7 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
+from mpm_verify.cases.mms import rates
 from mpm_verify.cases.mms.deviations import DEVIATIONS, SMALL_AMPLITUDE
 from mpm_verify.cases.mms.expectations import registered
 from mpm_verify.cases.mms.recorded import TABLE
@@ -83,3 +85,4 @@ def record(target: Path, of: Sequence[str], made: Iterable[Run]) -> None:
 if __name__ == "__main__":
     record(TABLE, HEAD, runs())
     record(VARIANTS_TABLE, VARIANTS_HEAD, variants())
+    record(rates.TABLE, rates.HEAD, rates.runs())

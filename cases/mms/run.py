@@ -15,6 +15,7 @@ from mpm_verify.solver.plugins import (
     TRANSFERS,
     available,
     create,
+    is_file,
     label,
     load,
     split,
@@ -154,6 +155,32 @@ class Run(RunRecord):
     def damping_outside(self) -> float:
         """Damping that the problem does not have."""
         return self.damping - self.damping_inside
+
+    @property
+    def stiffness(self) -> float:
+        """Ratio of bulk to shear modulus; 0 where the material does not state them or the volume ratio is smoothed."""
+        material = self.shipped_material
+        if not hasattr(material, "mu") or not hasattr(material, "lam") or self.smooths_volume:
+            return 0.0
+        return float(material.lam / material.mu + 2 / 3)
+
+    @property
+    def smooths_volume(self) -> bool:
+        """Whether the volume ratio, or its rate, is smoothed."""
+        smoothing = None if self.smoothing == "none" else create(SMOOTHINGS, self.smoothing)
+        return bool(
+            smoothing and smoothing.of != "stress" and (smoothing.volumetric or split(self.smoothing)[0] == "fbar")
+        )
+
+    @property
+    def strays(self) -> bool:
+        """Whether the material has a rate that makes it another solid than the one of its energy."""
+        return bool(getattr(self.shipped_material, "strays", False))
+
+    @property
+    def shipped_material(self) -> Any:
+        """Constitutive model, None of a user's file, which may be gone when its results are read."""
+        return None if not self.material or is_file(self.material) else create(MATERIALS, self.material)
 
     @property
     def tied(self) -> bool:

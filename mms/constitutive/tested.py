@@ -57,6 +57,7 @@ class Reason(StrEnum):
     CUT = "cut"  # a limit cuts the domains
     NO_RATE_FORM = "no_rate_form"  # a stress from F alone
     NO_ENERGY = "no_energy"  # in rate form
+    IN_STEPS = "in_steps"  # in rate form: the stress of its energy after many steps alone
     NO_MODULI = "no_moduli"  # the material does not state them
     STRETCHED = "stretched"  # the rate carries the stress by the stretch too
     NO_FRICTION = "no_friction"

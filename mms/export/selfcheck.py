@@ -72,10 +72,9 @@ def checked(program: Program, expressions: Sequence[sp.Expr], exact: Fields, X: 
 def precisely(fields: Fields, expressions: Sequence[sp.Expr]) -> Any:
     """Function of the coordinates and the time that gives the expressions at 30 digits, a list of mpmath numbers.
 
-    Of three coordinates the symbols that they are written in are evaluated first: in coordinates alone, as those of
-    two, they are so long that it takes minutes.
+    Where they are long the symbols that they are written in are evaluated first, else all is in coordinates alone.
     """
-    expressions = fields.full(list(expressions)) if len(fields.X) == 2 else expressions
+    expressions = expressions if fields.long else fields.full(list(expressions))
     at, used = (*fields.X, fields.t), set().union(*(sp.sympify(e).free_symbols for e in expressions))
     inner = {symbol: e for symbol, e in fields.inner.items() if symbol in used}
     first = sp.lambdify(at, list(inner.values()), "mpmath", cse=True)

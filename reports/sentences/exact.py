@@ -112,6 +112,7 @@ REASONS = {
     Reason.CUT: "the limit of the method cuts its domains",
     Reason.NO_RATE_FORM: "the stress is a function of F",
     Reason.NO_ENERGY: "the material is in rate form and has no energy",
+    Reason.IN_STEPS: "the material is in rate form and has the stress of its energy after many steps alone",
     Reason.NO_MODULI: "the material states no moduli",
     Reason.STRETCHED: "the rate carries the stress by the stretch too",
     Reason.NO_FRICTION: "the material has no friction",

@@ -13,6 +13,8 @@ NAMES = {
     CauseCode.TIME_STEP: "the time step",
     CauseCode.ROUND_OFF: "round-off",
     CauseCode.DAMPING: "damping that the problem does not have",
+    CauseCode.LOCKING: "volumetric locking",
+    CauseCode.OTHER_SOLID: "another solid",
 }
 UNMEASURED = {
     CauseCode.QUADRATURE: "one particle count only; a list for --ppc adds others",
@@ -20,6 +22,8 @@ UNMEASURED = {
     CauseCode.TIME_STEP: "no run with half of it; a list for --courant adds one",
     CauseCode.ROUND_OFF: "no round-off floor is known",
     CauseCode.DAMPING: "the run has none",
+    CauseCode.LOCKING: "the material can be compressed",
+    CauseCode.OTHER_SOLID: "the material is the one of the problem",
 }
 
 
@@ -115,7 +119,21 @@ def _damping(n: dict[str, float], peer: Peer | None) -> str:
     return f"{told}, and without it the finest error changes by {words.percent(n['change'], 1, '+')}"
 
 
+def _locking(n: dict[str, float], peer: Peer | None) -> str:
+    told = f"the bulk modulus is {n['ratio']:.3g} times the shear modulus, which {n['cells']:.0f} cells do not outgrow"
+    if "change" not in n:
+        return f"{told}; --smoothing none,fbar shows what a smoothed volume ratio does"
+    return f"{told}, and with a smoothed volume ratio the finest error changes by {words.percent(n['change'], 1, '+')}"
+
+
+def _other_solid(n: dict[str, float], peer: Peer | None) -> str:
+    told = "with its rate the stress is no function of F, and the problem is that of an energy"
+    return f"{told}; the finest error is {words.percent(n['error'] / n['size'], 1)} of u" if n["size"] else told
+
+
 MEASURED = {
+    CauseCode.LOCKING: _locking,
+    CauseCode.OTHER_SOLID: _other_solid,
     CauseCode.CROSSINGS: _crossings,
     CauseCode.QUADRATURE: _quadrature,
     CauseCode.GAPS: _gaps,

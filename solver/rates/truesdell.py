@@ -50,5 +50,6 @@ class Truesdell(Rate):
     """Truesdell rate: the stress is convected by F."""
 
     order: ClassVar[float] = 2.0
+    convects: ClassVar[bool] = True
     unrotate = staticmethod(unrotate)
     rotate = staticmethod(rotate)

@@ -20,7 +20,9 @@ from mpm_verify.solver.state import Floats, Particles
 Of = Literal["rate", "stress", "both"]
 Where = Literal["cell", "node"]
 Into = Literal["force", "history"]
-RATES = ("green_naghdi", "jaumann")  # their rotations are those of F; a stretched frame would need the smoothed F too
+# Their frames turn alone, and the first two by F as it is, the third half by the smoothed strain; one that stretches
+# with F would need the smoothed F at the end of the step too.
+RATES = ("green_naghdi", "jaumann", "logarithmic")
 
 
 @dataclass(frozen=True)
@@ -73,13 +75,16 @@ class Smoothing:
         return self.of == "both" and self.where == "cell" and self.into == "force"
 
     def check(self, material: Material) -> None:
-        """Raise ValueError for a material that cannot be smoothed: of a function of F the stress of the force can."""
-        if material.rate is None and self.of == "stress" and self.into == "force":
+        """Raise ValueError for a material that cannot be smoothed.
+
+        Of a function of F the stress of the force can be, and the volume ratio that it sees, which is F-bar.
+        """
+        if material.rate is None and self.into == "force" and (self.of == "stress" or not self.deviatoric):
             return
         if material.rate is None:
             raise ValueError(
-                "smoothing must have a material in rate form: a function of F has no rate and no history, only the "
-                "stress of its force can be smoothed; take volumetric:of=stress, deviatoric:of=stress or full:of=stress"
+                "a function of F has no strain rate and no history to smooth: take fbar, volumetric, "
+                "or deviatoric:of=stress, full:of=stress, with into=force"
             )
         if material.rate not in RATES:
             raise ValueError(f"smoothing must have a material in rate form with a rate of {', '.join(RATES)}")
@@ -101,11 +106,21 @@ class Smoothing:
         p = context.particles
         if self.of == "stress":
             return None
+        if context.material.rate is None:
+            return self.bar(context)
         increments, F_smoothed = np.empty((len(p), 4)), np.empty_like(p.F)
         strains(p.F_old, p.F, increments)
         increments[:, :3] = self.smooth(context, x, increments[:, :3])
         strained(p.F_old, increments, F_smoothed)
         return F_smoothed
+
+    def bar(self, context: Context) -> Floats:
+        """F-bar (P,2,2) of a function of F: F with the projected det F in the plane, weighted by initial volumes."""
+        p = context.particles
+        J = np.linalg.det(p.F)
+        mean = self.project(context, p.x, J[:, None], p.V0)[:, 0]
+        scaled: Floats = np.sqrt(1 + self.beta * (mean / J - 1))[:, None, None] * p.F
+        return scaled
 
     def smooth(self, context: Context, x: Floats, tensor: Floats) -> Floats:
         """Plane tensors xx, yy, xy (P,3) with the chosen parts projected."""
@@ -115,15 +130,15 @@ class Smoothing:
         parts[:, chosen] += self.beta * (means - parts[:, chosen])
         return np.stack([parts[:, 0] + parts[:, 1], parts[:, 0] - parts[:, 1], parts[:, 2]], axis=1)
 
-    def project(self, context: Context, x: Floats, values: Floats) -> Floats:
-        """Project values (P,C), by the volumes of the start of the step. Raises RunFailed outside the grid."""
+    def project(self, context: Context, x: Floats, values: Floats, V: Floats | None = None) -> Floats:
+        """Project values (P,C), by V (P,), the volumes of the start of the step. Raises RunFailed outside the grid."""
         g, out = context.grid, np.empty_like(values)
         s = (x - g.origin) / g.dx
         inside = ((s >= 0) & (s < (g.nx - 1, g.ny - 1))).all(axis=1)  # NaN is not
         if not inside.all():
             fail(context, int(np.flatnonzero(~inside)[0]), FailureKind.OUTSIDE_GRID)
         nodes = self.where == "node"
-        project(x, volumes(context.particles), values, g.origin, 1.0 / g.dx, g.nx, g.ny, nodes, out)
+        project(x, volumes(context.particles) if V is None else V, values, g.origin, 1.0 / g.dx, g.nx, g.ny, nodes, out)
         return out
 
 
