@@ -155,7 +155,7 @@ class Surface:
     def act(self, model: Context) -> None:
         """Add the forces of the edge to those of the nodes. Raises RunFailed where it reaches out of the grid."""
         grid, basis, force = model.grid, model.basis, self.area[:, None] * self.traction(model)
-        x = self.x
+        x = self.where(model)
         if basis.faces_carry:
             x, force = self.at_corners(model, force)
         self.on_grid(push, model, x, force, grid.momentum_force)
@@ -196,8 +196,12 @@ class Surface:
     def move(self, model: Context) -> None:
         """Move the points with the new velocity of the grid, by a step."""
         v = np.empty_like(self.x)
-        self.on_grid(look_up, model, self.x, model.grid.velocity_acceleration, v)
+        self.on_grid(look_up, model, self.where(model), model.grid.velocity_acceleration, v)
         self.x += model.dt * v
+
+    def where(self, model: Context) -> Floats:
+        """Positions (2S,2) of the points on the grid: x, or X beside weights of the reference positions."""
+        return self.X if model.basis.reference else self.x
 
     @staticmethod
     def on_grid(kernel: Callable[..., int], model: Context, x: Floats, *arrays: Floats) -> None:

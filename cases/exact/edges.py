@@ -11,6 +11,7 @@ from mpm_verify.cases.exact.body import (
     Subject,
     Variant,
     by_id,
+    carried,
     deformed,
     layout,
     modelled,
@@ -87,7 +88,8 @@ def sums(subject: Subject) -> Tested:
         traction = stress(X, LATER * subject.dt) @ np.array(N)
         force += length @ traction
         moment += np.einsum("s,sa,sb->ab", length, traction, position(X) - MIDDLE)
-    found = np.einsum("na,nb->ab", model.grid.force, model.grid.nodes - MIDDLE)
+    nodes = carried(subject, model.grid.nodes, STRAINED)
+    found = np.einsum("na,nb->ab", model.grid.force, nodes - MIDDLE)
     whole = subject.stress * 4 * DX
     pairs: Pairs = [(model.grid.force.sum(axis=0), force, whole), (found, moment, whole * DX)]
     return Tested("edge_sums", farthest(pairs), bound(8 * subject.support), Part.EDGES)
