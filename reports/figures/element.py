@@ -62,7 +62,9 @@ def rates(own: Mapping[str, Curve], exact: Mapping[str, Curve]) -> Figure:
     """Shear stress xy and normal stress xx over G against the shear, a line for each rate over its closed form."""
     with rc_context(style.RC):
         figure = Figure(figsize=(9.2, 4.4), layout="constrained")
-        for axes, of, label in zip(figure.subplots(1, 2), ("xy", "xx"), ("σ_xy / G", "σ_xx / G"), strict=True):
+        for axes, of, label in zip(
+            figure.subplots(1, 2), ("xy", "xx"), (r"$\sigma_{xy}$ / G", r"$\sigma_{xx}$ / G"), strict=True
+        ):
             axes.set(xlabel="shear γ", ylabel=label)
             for number, (name, curve) in enumerate(own.items()):
                 axes.plot(exact[name]["gamma"], exact[name][of], color=EXACT, linewidth=6.5, zorder=1)
