@@ -180,6 +180,7 @@ def test_order_of_u(write: Write, name: str, boundary: Any, recorded: float) -> 
 FINE = [
     *((name, "pulled", "cpdi") for name in MOTIONS), ("all move", "pulled", "cpdi2"),
     *((name, "prescribed", "cpdi") for name in ("all move", "bending", "tapered")), ("all move", "prescribed", "cpdi2"),
+    ("all move", "pulled", "tlmpm"), ("turn", "pulled", "tlmpm"), ("all move", "prescribed", "tlmpm"),
 ]  # fmt: skip
 
 
