@@ -21,12 +21,16 @@ from mpm_verify.verify.detecting import known, rule, stored
 PASS = str(Outcome.PASS)
 Answer = tuple[str, str]
 SOILS = ("mohr_coulomb", "drucker_prager", "ubcsand", "hypoelastic", "linear_elastic")
+HENCKY = ("hencky", "hencky_rate")
+RATE_FORM = ("mohr_coulomb", "drucker_prager", "ubcsand")
+FRICTIONLESS = ("mohr_coulomb:phi=0,c=1000", "drucker_prager:phi=0,c=1000")
 VARIANTS = (
     "mohr_coulomb:c=1000,sigma_t=500",
     "mohr_coulomb:c=1000,sigma_t=1e6",
     "mohr_coulomb:void=1",
 )  # cut-off, apex, void
-PATHS: Mapping[str, tuple[Any, ...]] = {"test": ("oedometric", "biaxial", "shear_volume", "properties"), "steps": (50,)}
+PATHS = ("oedometric", "biaxial", "shear_volume", "properties")
+TRIAXIAL = ("triaxial_compression", "triaxial_extension")  # of soils in rate form
 SMALL: Mapping[str, tuple[Any, ...]] = {
     "cells": (3,),
     "ppc": (4,),
@@ -92,15 +96,19 @@ def manufactured(solution: str) -> Callable[[Subject], Answer]:
 def exact(subject: Subject) -> Answer:
     """Exactness battery of the method with every constitutive model, and soils with cohesion and void strain."""
     return judged(
-        subject, "exact", Asked("exact", {"method": (subject.method,), "material": ("neo_hookean", *SOILS, *VARIANTS)})
+        subject,
+        "exact",
+        Asked("exact", {"method": (subject.method,), "material": ("neo_hookean", *HENCKY, *SOILS, *VARIANTS)}),
     )
 
 
 def material(subject: Subject) -> Answer:
     """Element tests of every constitutive model, along the paths that tell most in least time."""
-    models = ("neo_hookean", *SOILS)
+    models = ("neo_hookean", *SOILS, *FRICTIONLESS)
     for model in models:
-        outcome, evidence = judged(subject, f"element_{model}", Asked("element", {"material": (model,), **PATHS}))
+        tests = PATHS + TRIAXIAL * (model.partition(":")[0] in RATE_FORM)
+        asked = Asked("element", {"material": (model,), "test": tests, "steps": (50,)})
+        outcome, evidence = judged(subject, f"element_{model}", asked)
         if outcome != PASS and not (outcome == str(Outcome.INCONCLUSIVE) and not evidence):  # nothing to judge
             return outcome, f"{model}: {evidence}"
     return PASS, ""
