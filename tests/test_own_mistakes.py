@@ -123,7 +123,7 @@ ENERGIES = {
     "return None": ": energy returns None; it must return the stored energy",
     "return 'x'": ": energy returns 'x'; it must return",
     "return 0": ": energy returns 0; it must return",
-    "return F": ": energy returns [[F00, F01, F02]",
+    "return F": ": energy returns [[F00, F01, 0]",
     "raise RuntimeError": "RuntimeError",
     "return np.log(F[0][0])": "take the log that it is given",
     "return float(F[0][0])": "F holds symbols",

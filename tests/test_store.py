@@ -112,7 +112,13 @@ def test_create_keeps_results(store: Store) -> None:
 # ---- the digest is the name of the run
 
 
-SPECIAL = {"start": STARTS[0], "precision": "single", "time_step": "h2", "dim": 3}  # fields that take some words alone
+SPECIAL = {
+    "start": STARTS[0],
+    "precision": "single",
+    "time_step": "h2",
+    "dim": 3,
+    "manufacture": "damping",
+}  # fields that take some words alone
 
 
 @pytest.mark.parametrize("name", [field.name for field in fields(Run) if field.metadata["named"]])

@@ -92,8 +92,10 @@ class Element:
 
     def weight(self, strain: Floats) -> Floats:
         """Stress that the kernel of a material in rate form sees, over the Cauchy stress, at strains (...,3 or 4)."""
+        if not self.material.kirchhoff:
+            return np.ones(strain.shape[:-1])
         volume = strain[..., 0] + strain[..., 1] + strain[..., PLANE:].sum(axis=-1)
-        return np.asarray(np.exp(self.material.kirchhoff * volume))
+        return np.asarray(np.exp(volume))
 
     def solve(self, state: State, control: Control, guess: Floats, scale: Floats, corner: bool = False) -> State:
         """State after one step under a control; `scale` is the size of its residuals. Raises ElementFailed.

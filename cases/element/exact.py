@@ -25,6 +25,7 @@ from mpm_verify.solver.state import Floats
 
 Columns = dict[str, Floats]
 POINTS = 60
+ELASTIC = "linear elasticity"
 
 
 def exact(material: Any, test: ElementTest, stress: float, begun: State | None = None) -> tuple[Columns, str] | None:
@@ -52,7 +53,7 @@ def hypoelastic(material: Elastic, test: ElementTest, begun: State) -> tuple[Col
     """Elastic curve of any test, and its source; along a motion that of its rate."""
     if test.motion:
         return along(material, test, begun)
-    return (legs(material, test, begun) if test.mixed else elastic(material, test, begun)), "linear elasticity"
+    return (legs(material, test, begun) if test.mixed else elastic(material, test, begun)), ELASTIC
 
 
 def stiffness(material: Elastic, size: int) -> Floats:
@@ -154,7 +155,7 @@ def perfect(material: MohrCoulomb, test: ElementTest, begun: State) -> tuple[Col
     K0 = material.nu / (1 - material.nu)
     least = {"isotropic": 2 * material.nu, "oedometric": K0}  # of the elastic principal stresses, over the largest
     if least.get(test.name, 0.0) * k >= 1:
-        return elastic(material, test, begun), "linear elasticity"
+        return elastic(material, test, begun), ELASTIC
     if test.name != "biaxial":
         return None
     strong = k * stress + 2 * material.c * np.sqrt(k)

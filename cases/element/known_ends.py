@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from mpm_verify.cases.element.exact import ELASTIC
 from mpm_verify.cases.element.study import ElementStudy
 from mpm_verify.cases.element.triaxial_exact import MERIDIANS
 from mpm_verify.cases.harness.checks import Check
@@ -57,7 +58,7 @@ def at_failure(material: Any, studied: ElementStudy, side: int) -> list[Check]:
 
 def at_rest(material: Any, studied: ElementStudy) -> list[Check]:
     """Check of lateral over vertical stress, K0 = nu/(1 - nu), where the soil stays elastic."""
-    if studied.source != "linear elasticity":
+    if studied.source != ELASTIC:
         return []
     sx, sy = studied.curve["sx"], studied.curve["sy"]
     found = float((sx[-1] - sx[0]) / (sy[-1] - sy[0]))

@@ -131,11 +131,6 @@ def check_ours(runs: Sequence[Run]) -> None:
     for smoothing, material in dict.fromkeys((run.smoothing, run.material) for run in runs):
         if smoothing != "none":
             create(SMOOTHINGS, smoothing).check(create(MATERIALS, material))
-    for run in (run for run in runs if create(METHODS, run.method).reference):
-        if run.smoothing != "none":
-            raise ValueError(
-                f"{run.method} smoothes nothing, as its particles stay in their cells; leave --smoothing out"
-            )
     for run in runs:
         own = is_file(run.solution) and dimension(create(SOLUTIONS, run.solution)) == 3  # told by its check
         if run.dim == 3 and not own:

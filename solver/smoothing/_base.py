@@ -118,7 +118,7 @@ class Smoothing:
         """F-bar (P,2,2) of a function of F: F with the projected det F in the plane, weighted by initial volumes."""
         p = context.particles
         J = np.linalg.det(p.F)
-        mean = self.project(context, p.x, J[:, None], p.V0)[:, 0]
+        mean = self.project(context, context.basis.on_grid(p), J[:, None], p.V0)[:, 0]
         scaled: Floats = np.sqrt(1 + self.beta * (mean / J - 1))[:, None, None] * p.F
         return scaled
 
