@@ -178,6 +178,18 @@ def test_nothing_is_judged_without_an_order(verify: Call) -> None:
     )
 
 
+@pytest.mark.parametrize("quantity", ["u", "v", "F", "sigma"])
+@pytest.mark.parametrize("words", [[], ["--json"], ["--no-exact"]])
+def test_a_quantity_may_have_any_name(verify: Call, quantity: str, words: list[str]) -> None:
+    """Those of a manufactured solution too, which have norms there."""
+    name = "value" if words == ["--no-exact"] else "error"
+    rows = "".join(f"{n},{quantity},{1 / n**2 + (name == 'value')!r}\n" for n in (8, 16, 32, 64, 128))
+    Path("u.csv").write_text(f"cells,quantity,{name}\n{rows}")
+    code, out, err = verify("judge", "u.csv", "--order", "2", "--steady", "--no-page", *words)
+    assert (code, err) == (0, "")
+    assert "PASS" in out
+
+
 def test_the_band_and_the_floor_count(tmp_path: Path) -> None:
     text = power(1.7)
     assert judged(text, tmp_path, order=2.0)[0].verdict.outcome is Outcome.FAIL

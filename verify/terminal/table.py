@@ -82,9 +82,9 @@ def show(record: Record, page: Path | None, console: Console | None = None) -> N
 def by_start(record: Record) -> dict[str, float]:
     """Last local order of u by start, of a solver of somebody else that was given time levels by force."""
     found: dict[str, float] = {}
-    for series in record.series:
+    for series in (one for one in record.series if getattr(one.first, "start", "")):
         errors = record.errors(series, "u", "rms")
-        if getattr(series.first, "start", "") and len(errors) > 1:
+        if len(errors) > 1:
             (coarse, e), (fine, f) = errors[-2:]
             found[series.first.start] = log(e / f) / log(fine.cells / coarse.cells)
     return found
