@@ -68,7 +68,10 @@ def examine(
     ValueError
         Where nothing is stored of the case and no reference is to be run.
     """
-    known = {scheme: found for scheme, found in stored(run).items() if scheme in chosen}
+    kept = stored(run)
+    known = {scheme: found for scheme, found in kept.items() if scheme in chosen}
+    if stored_only and kept and not known:
+        raise ValueError("--stored: no digits are stored of these references; leave --stored out, and they are run")
     if stored_only and not known:
         raise ValueError("--stored: no digits are stored of this case; leave --stored out, and the reference is run")
     case = exported(run)
