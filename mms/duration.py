@@ -28,7 +28,8 @@ def lasting(solution: Any, periods: float) -> Any:
     if not periods:
         return solution
     kind, duration = type(solution), periods * period(solution)
-    names = {"duration": property(lambda self: duration), "__module__": kind.__module__, "__doc__": kind.__doc__}
+    given = property(lambda self: duration, lambda self, stated: None)  # a dataclass may set its own
+    names = {"duration": given, "__module__": kind.__module__, "__doc__": kind.__doc__}
     made: Any = object.__new__(type(kind.__name__, (kind,), names))
     known = {name: value for name, value in vars(solution).items() if not _found(kind, name)}
     vars(made).update(known)

@@ -14,7 +14,7 @@ from mpm_verify.cases.judging.order import Expectation, Level, Outcome, judge
 from mpm_verify.cases.judging.records import ReasonCode
 from mpm_verify.cases.mms import rates
 from mpm_verify.cases.mms.execute import execute
-from mpm_verify.cases.mms.expectations import expected
+from mpm_verify.cases.mms.expectations import expected, promised
 from mpm_verify.cases.mms.rates import SHEARED, table
 from mpm_verify.cases.mms.run import Run
 from mpm_verify.mms.manufacture import manufacture
@@ -278,3 +278,20 @@ def test_each_negative_control_is_refused_by_its_errors(rate: str) -> None:
         result = execute(Run("cpdi", SHEARED, canonical(MATERIALS, f"hencky_rate:rate={rate}"), cells, 4))[0]
         away.append(abs(known[1 / cells].ratio(result.errors["v"]["rms"]) - 1) if result.errors else np.inf)
     assert max(away) < 1e-3 if rate == "logarithmic" else max(away) > 0.03
+
+
+def test_rates_that_agree_on_a_straight_motion_are_no_other_solid_there() -> None:
+    """Green-Naghdi and Jaumann are the logarithmic rate where F is diagonal; Truesdell's is not."""
+    runs = {
+        (rate, solution): Run("mpm", solution, f"hencky_rate:rate={rate}", 8, 4)
+        for rate in ("jaumann", "green_naghdi", "truesdell")
+        for solution in ("axis_aligned", "clamped_shear")
+    }
+    assert {one for one, run in runs.items() if not run.strays} == {
+        ("jaumann", "axis_aligned"), ("green_naghdi", "axis_aligned"),
+    }  # fmt: skip
+
+
+def test_a_solver_of_somebody_else_promises_nothing() -> None:
+    assert promised("mycode", crossing=True) is None
+    assert promised("cpdi", crossing=False) is not None

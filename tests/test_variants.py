@@ -5,10 +5,11 @@ runs that it must not hold for.
 """
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import log, pi, sqrt
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -370,3 +371,24 @@ def test_no_recorded_refinement_is_against_what_is_registered() -> None:
     assert set(outcomes) <= {Outcome.PASS, Outcome.INCONCLUSIVE}
     assert outcomes.count(Outcome.PASS) >= 0.9 * len(outcomes) == pytest.approx(29.7)
     assert {found[name] for name, what in expected.items() if what and what.stall} == {Outcome.PASS}
+
+
+@pytest.mark.parametrize("material", ["hencky", "neo_hookean:E=20000,nu=0.2"])
+@pytest.mark.parametrize("axis", [{"damping": 0.05, "manufacture": "damping"}, {"periods": 0.125}])
+def test_recorded_errors_are_those_of_the_usual_material(material: str, axis: dict[str, Any]) -> None:
+    run = Run("cpdi", "clamped_shear", "neo_hookean", 16, 4, **axis)
+    own, other = (expectation(one, "u", "rms") for one in (run, replace(run, material=material)))
+    assert own is not None
+    assert own.recorded
+    assert other is not None
+    assert (other.order, other.recorded) == (own.order, ())
+
+
+def test_a_solution_may_hold_its_duration_as_a_parameter() -> None:
+    @dataclass(frozen=True)
+    class Own:
+        duration: float = 2.0
+        C: float = 10.0
+
+    longer = lasting(Own(), 3)
+    assert (longer.duration, replace(longer, C=20.0).duration) == (6.0, 6.0)

@@ -127,6 +127,8 @@ def mohr_coulomb(material: MohrCoulomb) -> list[Check]:
     strong = k * stress + 2 * material.c * np.sqrt(k)
     yields = (strong - stress) * (1 - material.nu**2) / material.E
     end = run(material, "biaxial", 4 * yields, stress)
+    if end.failed:
+        return found
     rate = (end.strain[-1] - end.strain[-20])[:2]
     group, K0 = "Biaxial compression and K0", material.nu / (1 - material.nu)
     just = run(material, "biaxial", yields * (1 - 1e-6), stress).history[-1, 0]

@@ -1,6 +1,6 @@
 """Curves of an element test, drawn and compared: strains and stresses of soil mechanics, compression positive."""
 
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -54,6 +54,8 @@ class EnergyElement(Element):
 
 class EnergyMotion(Motion):
     """The same along a motion."""
+
+    frame: ClassVar[None] = None  # whatever the rate of the material
 
     def of_F(self, ends: Floats) -> Floats:
         """Stress (n,4) of F (n,5)."""

@@ -33,7 +33,7 @@ def exact(material: Any, test: ElementTest, stress: float, begun: State | None =
 
     `begun` is the state at the start, the isotropic `stress` if it is left out.
     """
-    if material.energy is not None:
+    if material.energy is not None and not (material.strays if test.motion else getattr(material, "convected", False)):
         kind = EnergyMotion if test.motion else EnergyElement
         found = follow(kind(material), test, test.steps(POINTS), start(material, test, stress))
         return columns(test, found), "derivative of the energy"

@@ -55,7 +55,8 @@ class Motion(Element):
         """Stress (n,4) and history (n,H) of a material in rate form at F (n,5)."""
         count = len(ends)
         old, new = (np.ascontiguousarray(F[:, FLAT]).ravel() for F in (np.tile(state.strain, (count, 1)), ends))
-        flat, de = np.tile(state.sigma, count), np.empty(3 * count)
+        started, ended = (volume(F) ** self.material.kirchhoff for F in (state.strain[None], ends))
+        flat, de = np.tile(started * state.sigma, count), np.empty(3 * count)
         self.frame.unrotate(old, new, flat, de)
         sigma, history = flat.reshape(count, 4), np.tile(state.history, (count, 1))
         zz = 2 * (ends[:, 3] - state.strain[3]) / (ends[:, 3] + state.strain[3])
@@ -64,7 +65,13 @@ class Motion(Element):
         respond(self.material, self.constants, sigma, increments, history)
         flat = np.ascontiguousarray(sigma).ravel()
         self.frame.rotate(old, new, flat)
-        return flat.reshape(count, 4), history
+        return flat.reshape(count, 4) / ended[:, None], history
+
+
+def volume(F: Floats) -> Floats:
+    """Determinant (n,) of F (n,5)."""
+    J: Floats = (F[:, 0] * F[:, 1] - F[:, 2] * F[:, 4]) * F[:, 3]
+    return J
 
 
 def matrices(F: Floats) -> Floats:

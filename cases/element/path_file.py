@@ -90,16 +90,27 @@ def moving(path: File, points: Floats, targets: Floats, source: PathSource, how:
     """Path of F; what the first row does not give is undeformed."""
     points, mixed = points.copy(), bool(source.stresses)
     points[0] = np.where(np.isfinite(points[0]), points[0], UNIT)
-    for line, F in zip(source.lines, points, strict=True):
-        J = (F[0] * F[1] - F[2] * F[4]) * F[3]  # not a number where a stress is given in place of one
+    for line, F, before in zip(source.lines, points, [points[0], *points], strict=False):
+        J = least(before, F)  # not a number where a stress is given in place of one
         if J <= 0:
-            raise ValueError(f"{path}, line {line}: F has the determinant {J:.3g}; it must be above zero")
+            raise ValueError(
+                f"{path}, line {line}: F has the determinant {J:.3g} there or on its way; it must be above zero"
+            )
     if not mixed and not np.ptp(points, axis=0).any():
         raise ValueError(f"{path} must have a motion: F that changes")
     return ElementTest(
         "path", f"Motion of {path.name}", (), 1.0, shear=shears(points), motion=True, points=points,
         targets=targets if mixed else np.zeros((0, 3)), source=replace(source, motion=how),
     )  # fmt: skip
+
+
+def least(start: Floats, end: Floats) -> float:
+    """Least determinant of F (5,) in the plane on the straight way, or of its zz."""
+    d = end - start
+    a, b = d[0] * d[1] - d[2] * d[4], start[0] * d[1] + d[0] * start[1] - start[2] * d[4] - d[2] * start[4]
+    turn = -b / (2 * a) if a > 0 else 1.0
+    at = [start + t * d for t in (0.0, min(max(turn, 0.0), 1.0), 1.0)]
+    return float(min(*(F[0] * F[1] - F[2] * F[4] for F in at), start[3], end[3]))
 
 
 def shears(points: Floats) -> bool:

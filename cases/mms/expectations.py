@@ -149,7 +149,10 @@ def promised(method: str, crossing: bool) -> Expectation | None:
 
     A method keeps it that has no other registered on each of the solutions of large deformation.
     """
-    promise: Promise = load(METHODS, method.partition(":")[0]).promises(crossing=crossing)
+    name = method.partition(":")[0]
+    if name not in available(METHODS) and not is_file(name):  # a solver of somebody else
+        return None
+    promise: Promise = load(METHODS, name).promises(crossing=crossing)
     deviates = (DEVIATIONS[name].get(method) for name in LARGE)
     ends = (known.stalls or known.fails or known.inverts for known in deviates if known)
     if promise.order is None or (crossing and any(ends)):

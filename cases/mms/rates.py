@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from mpm_verify.cases.judging.records import Expectation, Recorded
-from mpm_verify.cases.mms.run import QUANTITIES, Run
+from mpm_verify.cases.mms.run import QUANTITIES, STRAIGHT, TURNING, Run
 from mpm_verify.solver.plugins import (
     MATERIALS,
     NEGATIVE_CONTROLS,
@@ -28,10 +28,9 @@ TABLE = Path(__file__).with_name("recorded_rates.csv")
 HEAD = ("material", "solution", "method", "ppc", "cells")  # fields of a run that a row of the table is of
 SHEARED = "clamped_shear:G=0.1"  # shears so far that rates differ by more than grids of 24 cells and more err
 SLIGHT = "clamped_shear:G=0.01"  # Truesdell's is another solid by so much that on larger shears no order falls
-STRAIGHT = ("axis_aligned", "bar")  # solutions whose F is diagonal
 METHOD, PPC = "cpdi", 4
 CELLS = (8, 12, 16, 24, 32, 48)
-OWN, CONVECTED = ("green_naghdi", "jaumann"), "truesdell"
+OWN, CONVECTED = TURNING, "truesdell"
 WITHIN = 0.01  # relative distance from a recorded error, as of the others
 STALL, STALL_H = 1.8, 1 / 32  # local order that the limit of another rate keeps below, from these cells on
 SOURCE = "measured, see docs/materials.md"

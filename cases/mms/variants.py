@@ -11,8 +11,11 @@ from functools import cache
 from pathlib import Path
 
 from mpm_verify.cases.judging.records import Expectation, Recorded
+from mpm_verify.cases.mms.expectations import same
 from mpm_verify.cases.mms.run import Run
 from mpm_verify.solver.failure import FailureKind
+from mpm_verify.solver.plugins import SOLUTIONS as SHIPPED
+from mpm_verify.solver.plugins import create
 
 TABLE = Path(__file__).with_name("recorded_axes.csv")
 AXES = ("periods", "damping", "manufacture", "smoothing")  # what a row of the table is of, with its run
@@ -48,7 +51,8 @@ def variant(run: Run, quantity: str, norm: str, plain: Expectation | None) -> Ex
 def damped(run: Run, plain: Expectation) -> Expectation | None:
     """Damping that is not in the problem: an order of 2 stalls on a floor in proportion to it."""
     cells = next((cells for least, cells in SEEN_ON if run.damping >= least), 0)
-    if plain.order is None or not cells or run.damping > MOST_DAMPING or run.solution not in SOLUTIONS:
+    known = run.damping <= MOST_DAMPING and run.solution in SOLUTIONS and own_material(run)
+    if plain.order is None or not cells or not known:
         return None
     return Expectation(None, stall=STALL, stall_h=1 / cells)
 
@@ -71,18 +75,24 @@ def lasting(run: Run, plain: Expectation) -> Expectation | None:
 
 def unstable(run: Run, plain: Expectation) -> Expectation | None:
     """Printed time step, many times the stable one: particles are inverted at once."""
-    known = run.solution in SOLUTIONS and run.courant == Run.courant
+    known = run.solution in SOLUTIONS and run.courant == Run.courant and own_material(run)
     return Expectation(None, failed=FailureKind.INVERTED) if known else None
 
 
 KINDS = {"damping": damped, "smoothing": smoothed, "periods": lasting, "printed": unstable}
 
 
+def own_material(run: Run) -> bool:
+    """Whether the material is the one that the solution was measured in."""
+    return same(run.material, create(SHIPPED, run.solution).material)
+
+
 def recorded(run: Run, quantity: str) -> tuple[Recorded, ...]:
     """Recorded errors of a refinement of the reference solver at the usual time step, coarse to fine."""
-    if run.solver or run.courant != Run.courant or run.time_step != Run.time_step or not run.staggered:
+    usual = run.courant == Run.courant and run.time_step == Run.time_step and run.staggered
+    rows = () if run.solver or not usual else table().get(key(run), ())
+    if not rows or not own_material(run):
         return ()
-    rows = table().get(key(run), ())
     return tuple(Recorded(1 / cells, errors[quantity], errors[quantity]) for cells, errors in rows)
 
 
