@@ -10,6 +10,7 @@ import pandas as pd
 import pytest
 
 from mpm_verify.cases.harness.axes import particle_axes, position_axes, time_axes
+from mpm_verify.cases.harness.build import Asked, build
 from mpm_verify.cases.harness.refinement import collect, complete, refines
 from mpm_verify.cases.harness.runner import InProcess, run_study
 from mpm_verify.cases.harness.store import Store
@@ -235,3 +236,17 @@ def test_flip_and_apic_run_side_by_side(tmp_path: Path) -> None:
     }
     assert levels["flip"] == pytest.approx(fixtures.U_RMS["cpdi", 4][:2], rel=1e-3)
     assert levels["apic"] == pytest.approx([1.218e-3, 1.939e-4], rel=1e-3)
+
+
+def test_particles_that_all_lie_elsewhere_are_a_refinement() -> None:
+    """Judged by its order: recorded errors are those of particles at their usual positions."""
+    asked = Asked("mms", {"offset": ((0.3, 0.2),), "cells": (8, 12, 16, 24), "ppc": (4,)})
+    study = build(asked, "verify", "t")
+    (one,) = {plan.run.offset for plan in study.plans}
+    assert one == (0.3, 0.2)
+    (series,) = collect(study.runs)
+    assert [run.cells for run in series.runs] == [8, 12, 16, 24]
+    assert series.halved
+    expected = next(plan.expectation for plan in study.plans if plan.judged)
+    assert expected
+    assert (expected.order, expected.recorded) == (2, ())

@@ -14,10 +14,10 @@ from math import isclose
 from typing import Any
 
 from mpm_verify.cases.harness.axes import level
+from mpm_verify.cases.harness.refinement import usual_offset
 from mpm_verify.cases.harness.study import Head, QuantityPlan, ResultRecord, Study, head
 from mpm_verify.cases.harness.verdicts import Finding, findings
 from mpm_verify.cases.judging.records import Expectation, Outcome
-from mpm_verify.solver.layout import CENTRED
 
 PART = 0.3  # of the finest error: what is added to it
 WIDE = 1.0  # the band reaches so much further down
@@ -150,8 +150,8 @@ class _Spoilable:
     @cached_property
     def levels(self) -> list[Any]:
         """Runs at the usual positions with the largest time step, coarse to fine."""
-        courant = max(run.courant for run in self.runs)
-        usual = [run for run in self.runs if run.courant == courant and run.offset == CENTRED]
+        courant, at = max(run.courant for run in self.runs), usual_offset(self.runs)
+        usual = [run for run in self.runs if run.courant == courant and run.offset == at]
         return sorted(usual, key=lambda run: float(run.cells))
 
     def error(self, run: Any) -> float | None:
@@ -221,7 +221,7 @@ def _missing(s: _Spoilable) -> Altered | None:
 
 def _time_step(s: _Spoilable) -> Altered | None:
     coarser, finest = s.levels[-2:]
-    half = next((run for run in s.runs if run.cells == finest.cells and run.offset == CENTRED
+    half = next((run for run in s.runs if run.cells == finest.cells and run.offset == finest.offset
                  and isclose(run.courant, finest.courant / 2)), None)  # fmt: skip
     other = s.error(coarser)
     if half is None or finest.tied or other is None:

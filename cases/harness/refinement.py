@@ -69,12 +69,17 @@ def collect(runs: Sequence[Run]) -> list[Series]:
     return [_series(mine[name]) for name in sorted(mine, key=rank)]
 
 
+def usual_offset(runs: Sequence[Run]) -> Offset:
+    """Position of the particles of a refinement: in the middle, unless all lie elsewhere in their cells."""
+    return CENTRED if any(run.offset == CENTRED for run in runs) else runs[0].offset
+
+
 def _series(runs: Sequence[Run]) -> Series:
     """The largest Courant number is that of the refinement in space; the others are of the finest cells."""
-    courant = max(run.courant for run in runs)
-    usual = [run for run in runs if run.offset == CENTRED]
+    courant, at = max(run.courant for run in runs), usual_offset(runs)
+    usual = [run for run in runs if run.offset == at]
     refined = sorted((run for run in usual if run.courant == courant), key=lambda run: run.cells)
-    shifted = [run for run in runs if run.offset != CENTRED and run.courant == courant]
+    shifted = [run for run in runs if run.offset != at and run.courant == courant]
     replicates = tuple((run, *(r for r in shifted if r.cells == run.cells)) for run in refined)
     times = [run for run in usual if refined and run.cells == refined[-1].cells]
     return Series(tuple(refined), replicates, tuple(sorted(times, key=lambda run: -run.courant)))

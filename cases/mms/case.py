@@ -12,7 +12,7 @@ from mpm_verify.cases.judging.records import Expectation
 from mpm_verify.cases.mms.expectations import JUDGED_QUANTITY, expected
 from mpm_verify.cases.mms.run import AXES, NORMS, QUANTITIES, QUICK, SOLID, Result, Run
 from mpm_verify.cases.mms.stability import check_time_steps
-from mpm_verify.cases.mms.variants import axes, variant
+from mpm_verify.cases.mms.variants import axes, timed_as_usual, variant
 from mpm_verify.cases.solvers import column_map
 from mpm_verify.cases.solvers.command import PYTHON, program
 from mpm_verify.cases.solvers.naming import method_of, version_of
@@ -207,7 +207,7 @@ def expectation(run: Run, quantity: str, norm: str) -> Expectation | None:
     if run.start or any(getattr(run, name) != usual for name, usual in SCHEME.items()):
         return None
     beside = axes(run)
-    usual = run.courant == Run.courant and run.time_step == Run.time_step and run.staggered and not beside
+    usual = timed_as_usual(run) and run.offset == Run.offset and not beside
     plain = expected(run.method, run.solution, run.material, run.ppc, quantity, norm, usual, bool(run.solver))
     return variant(run, quantity, norm, plain) if beside else plain
 

@@ -82,6 +82,11 @@ def unstable(run: Run, plain: Expectation) -> Expectation | None:
 KINDS = {"damping": damped, "smoothing": smoothed, "periods": lasting, "printed": unstable}
 
 
+def timed_as_usual(run: Run) -> bool:
+    """Whether time step and start are those of the recorded errors."""
+    return run.courant == Run.courant and run.time_step == Run.time_step and run.staggered
+
+
 def own_material(run: Run) -> bool:
     """Whether the material is the one that the solution was measured in."""
     return same(run.material, create(SHIPPED, run.solution).material)
@@ -89,8 +94,8 @@ def own_material(run: Run) -> bool:
 
 def recorded(run: Run, quantity: str) -> tuple[Recorded, ...]:
     """Recorded errors of a refinement of the reference solver at the usual time step, coarse to fine."""
-    usual = run.courant == Run.courant and run.time_step == Run.time_step and run.staggered
-    rows = () if run.solver or not usual else table().get(key(run), ())
+    usual = timed_as_usual(run) and run.offset == Run.offset and not run.solver
+    rows = table().get(key(run), ()) if usual else ()
     if not rows or not own_material(run):
         return ()
     return tuple(Recorded(1 / cells, errors[quantity], errors[quantity]) for cells, errors in rows)
