@@ -87,7 +87,7 @@ EXAMPLES = {
     ReasonCode.ERROR_RISES: Example((*clean(count=4), 1.1 / 64**2)),
     ReasonCode.NOT_SETTLED: Example(tuple(np.exp2(-np.cumsum([6, 2.0, 1.83, 1.67, 1.5])).tolist())),
     ReasonCode.ORDER_ABOVE: Example(clean(2.4)),
-    ReasonCode.ORDER_UNDECIDED: Example(tuple(h**1.82 for h in (1 / 8, 1 / 16, 1 / 32, 1 / 64))),
+    ReasonCode.ORDER_UNDECIDED: Example((2.590e-3, 7.000e-4, 2.050e-4, 5.700e-5)),
     ReasonCode.CONTAMINATION_OPEN: Example(clean(1.9)),
     ReasonCode.ADDS_IN_SQUARE: Example(tuple(np.hypot(0.98**0.5 * H**2, 0.02**0.5 * H[-1] * H).tolist())),
     ReasonCode.MAGNITUDE_CARRIED: Example(clean(), known(1 / 256, 2)),

@@ -2,7 +2,8 @@
 
 Residuals of few levels say little, and may be small by luck: Student's factor of two degrees of freedom at 97.5 % is
 4.3. Most studies scatter by a few percent. So the usual scatter counts as if it had been measured, with KNOWN degrees
-of freedom, and is pooled with that of the residuals. SciPy is imported where it is called.
+of freedom, and is pooled with that of the residuals. Those of a tenth of it no luck explains: they are taken as they
+are. SciPy is imported where it is called.
 """
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 
 USUAL = 0.03  # relative scatter of an error by how particles lie in their cells
 KNOWN = 4.0  # degrees of freedom that it is worth: what a study of six levels says itself
+SMOOTH = USUAL / 10  # residuals of two degrees of freedom are below it in 0.5 % of studies that scatter as usual
 EXACT = 1e-12  # relative residuals below this are round-off; they stand for a perfect fit
 
 
@@ -25,6 +27,8 @@ def pooled(residual: float, dof: float) -> tuple[float, float]:
     ----------
     Smyth (2004), Stat. Appl. Genet. Mol. Biol. 3, 3, doi:10.2202/1544-6115.1027 (moderated t)
     """
+    if residual < SMOOTH:
+        return max(residual, EXACT), dof
     total = KNOWN + dof
     return float(np.sqrt((KNOWN * USUAL**2 + dof * residual**2) / total)), total
 
