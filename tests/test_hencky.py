@@ -253,7 +253,7 @@ def verdict(material: str, solution: str, errors: list[float]) -> tuple[Outcome,
 
 @pytest.mark.parametrize(("material", "solution"), [name[:2] for name in table()])
 def test_recorded_errors_are_as_registered_and_others_are_not(material: str, solution: str) -> None:
-    rows = [errors["u"] for _, errors in table()[material, solution, "cpdi", 4]]
+    rows = [errors["u"] for _, errors in table()[material, solution, "cpdi", "4"]]
     assert verdict(material, solution, rows)[0] is Outcome.PASS
     assert verdict(material, solution, [1.03 * error for error in rows]) == (Outcome.FAIL, ReasonCode.MAGNITUDE)
 
@@ -261,7 +261,7 @@ def test_recorded_errors_are_as_registered_and_others_are_not(material: str, sol
 def test_the_limit_of_another_rate_is_no_order_of_the_right_one() -> None:
     """Floors of 3.9 and 9.8 % of u: as if of the logarithmic rate both are refused, by magnitude and without it."""
     for rate in ("green_naghdi", "jaumann"):
-        rows = [errors["u"] for _, errors in table()[f"hencky_rate:rate={rate}", SHEARED, "cpdi", 4]]
+        rows = [errors["u"] for _, errors in table()[f"hencky_rate:rate={rate}", SHEARED, "cpdi", "4"]]
         assert verdict("hencky_rate", SHEARED, rows)[0] is Outcome.FAIL
         levels = [Level(1 / n, (e,)) for n, e in zip((8, 12, 16, 24, 32, 48), rows, strict=True)]
         plain = judge(levels, Expectation(2.0), floor=1e-14, dt_halved=rows[-1])

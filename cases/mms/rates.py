@@ -5,15 +5,14 @@ is the method's. A negative control claims the same, and is to be refused. Green
 logarithmic rate where nothing turns, and converge to another solution elsewhere: a stall, with its errors recorded.
 """
 
-import csv
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from functools import cache
 from pathlib import Path
 from typing import Any
 
 from mpm_verify.cases.judging.records import Expectation, Recorded
-from mpm_verify.cases.mms.run import QUANTITIES, STRAIGHT, TURNING, Run
+from mpm_verify.cases.mms.recorded import Row, read, refinement
+from mpm_verify.cases.mms.run import TURNING, Run, strays_on
 from mpm_verify.solver.plugins import (
     MATERIALS,
     NEGATIVE_CONTROLS,
@@ -30,7 +29,7 @@ SHEARED = "clamped_shear:G=0.1"  # shears so far that rates differ by more than 
 SLIGHT = "clamped_shear:G=0.01"  # Truesdell's is another solid by so much that on larger shears no order falls
 METHOD, PPC = "cpdi", 4
 CELLS = (8, 12, 16, 24, 32, 48)
-OWN, CONVECTED = TURNING, "truesdell"
+CONVECTED = "truesdell"
 WITHIN = 0.01  # relative distance from a recorded error, as of the others
 STALL, STALL_H = 1.8, 1 / 32  # local order that the limit of another rate keeps below, from these cells on
 SOURCE = "measured, see docs/materials.md"
@@ -40,7 +39,7 @@ def runs() -> Iterator[Run]:
     """Runs of the table."""
     asked = [("hencky", one, 32) for one in ("axis_aligned", "clamped_shear", "swirl")]
     asked += [("hencky_rate", one, 32) for one in ("clamped_shear", "swirl")] + [("hencky_rate", SHEARED, 48)]
-    asked += [(f"hencky_rate:rate={rate}", SHEARED, 48) for rate in OWN]
+    asked += [(f"hencky_rate:rate={rate}", SHEARED, 48) for rate in TURNING]
     asked += [(f"hencky_rate:rate={CONVECTED}", SLIGHT, 32), (f"hencky_rate:rate={CONVECTED},nu=0", "swirl", 32)]
     for material, solution, most in asked:
         names = canonical(SOLUTIONS, solution), canonical(MATERIALS, material)
@@ -54,7 +53,7 @@ def expected_of(
     model: Any = create(MATERIALS, material)
     if model.rate in available(NEGATIVE_CONTROLS):
         material = claimed(material)
-    elif strays(material) and not (model.rate in OWN and split(solution)[0] in STRAIGHT):
+    elif strays_on(model, solution):
         return limit(method, solution, material, ppc, quantity) if usual else None
     known = recorded(material, solution, method, ppc, quantity) if usual and expectation else ()
     return replace(expectation, recorded=known, within=WITHIN) if expectation and known else expectation
@@ -81,17 +80,9 @@ def limit(method: str, solution: str, material: str, ppc: int, quantity: str) ->
 
 def recorded(material: str, solution: str, method: str, ppc: int, quantity: str) -> tuple[Recorded, ...]:
     """Recorded errors of a refinement, coarse to fine."""
-    rows = table().get((material, solution, method, ppc), [])
-    return tuple(Recorded(1 / cells, errors[quantity], errors[quantity]) for cells, errors in rows)
+    return refinement(table().get((material, solution, method, str(ppc)), ()), quantity)
 
 
-@cache
-def table() -> dict[tuple[str, str, str, int], list[tuple[int, dict[str, float]]]]:
-    """Rows of the table by refinement: cells, and errors in rms by quantity."""
-    found: dict[tuple[str, str, str, int], list[tuple[int, dict[str, float]]]] = {}
-    with TABLE.open(newline="", encoding="utf-8") as file:
-        for row in csv.DictReader(file):
-            errors = {quantity: float(row[quantity]) for quantity in QUANTITIES}
-            named = row["material"], row["solution"], row["method"], int(row["ppc"])
-            found.setdefault(named, []).append((int(row["cells"]), errors))
-    return found
+def table() -> Mapping[tuple[str, ...], list[Row]]:
+    """Rows of recorded_rates.csv by material, solution, method and particles per cell."""
+    return read(TABLE, "material", "solution", "method", "ppc")

@@ -38,6 +38,12 @@ QUICK: dict[str, tuple[Any, ...]] = {
 SOLID = {"cells": (4, 6, 8, 12, 16), "ppc": (8,)}  # of a solution in three dimensions, whatever else
 
 
+def strays_on(material: Any, solution: str) -> bool:
+    """Whether the rate of a material, None of one that is not known, makes it another solid on a solution."""
+    straight = split(solution)[0] in STRAIGHT and getattr(material, "rate", "") in TURNING
+    return bool(getattr(material, "strays", False)) and not straight
+
+
 @dataclass(frozen=True)
 class Run(RunRecord):
     """One frozen point of a sweep; its digest is its name.
@@ -177,9 +183,7 @@ class Run(RunRecord):
     @property
     def strays(self) -> bool:
         """Whether the material has a rate that makes it another solid than the one of its energy."""
-        model = self.shipped_material
-        straight = split(self.solution)[0] in STRAIGHT and getattr(model, "rate", "") in TURNING
-        return bool(getattr(model, "strays", False)) and not straight
+        return strays_on(self.shipped_material, self.solution)
 
     @property
     def shipped_material(self) -> Any:

@@ -4,14 +4,13 @@ All was measured with CPDI, 4 per cell, see docs/methods.md; of MPM what is said
 Where two of these axes differ from what is usual nothing is registered.
 """
 
-import csv
 from collections.abc import Mapping
 from dataclasses import replace
-from functools import cache
 from pathlib import Path
 
 from mpm_verify.cases.judging.records import Expectation, Recorded
 from mpm_verify.cases.mms.expectations import same
+from mpm_verify.cases.mms.recorded import Row, read, refinement
 from mpm_verify.cases.mms.run import Run
 from mpm_verify.solver.failure import FailureKind
 from mpm_verify.solver.plugins import SOLUTIONS as SHIPPED
@@ -98,7 +97,7 @@ def recorded(run: Run, quantity: str) -> tuple[Recorded, ...]:
     rows = table().get(key(run), ()) if usual else ()
     if not rows or not own_material(run):
         return ()
-    return tuple(Recorded(1 / cells, errors[quantity], errors[quantity]) for cells, errors in rows)
+    return refinement(rows, quantity)
 
 
 def key(run: Run) -> tuple[str, ...]:
@@ -106,13 +105,6 @@ def key(run: Run) -> tuple[str, ...]:
     return run.solution, run.method, str(run.ppc), *(str(getattr(run, name)) for name in AXES)
 
 
-@cache
-def table() -> Mapping[tuple[str, ...], list[tuple[int, dict[str, float]]]]:
-    """Rows of the table by refinement: cells, and errors by quantity."""
-    found: dict[tuple[str, ...], list[tuple[int, dict[str, float]]]] = {}
-    with TABLE.open(newline="", encoding="utf-8") as file:
-        for row in csv.DictReader(file):
-            errors = {quantity: float(row[quantity]) for quantity in ("u", "v", "F", "sigma")}
-            named = tuple(row[name] for name in ("solution", "method", "ppc", *AXES))
-            found.setdefault(named, []).append((int(row["cells"]), errors))
-    return found
+def table() -> Mapping[tuple[str, ...], list[Row]]:
+    """Rows of recorded_axes.csv by refinement, see `key`."""
+    return read(TABLE, "solution", "method", "ppc", *AXES)
