@@ -25,7 +25,7 @@ from mpm_verify.solver.context import Context
 from mpm_verify.solver.failure import FailureKind, RunFailed
 from mpm_verify.solver.layout import Layout
 from mpm_verify.solver.state import Floats, Ints, Particles
-from mpm_verify.solver.surface_kernels import hats, look_up, push
+from mpm_verify.solver.surface_kernels import hats, weigh
 from mpm_verify.solver.weights import Basis
 
 Kind = Literal["pulled", "prescribed"]
@@ -33,6 +33,7 @@ SIDES = ("left", "right", "bottom", "top")  # side // 2 is the axis of the norma
 STIFFNESS = 2.0  # with 1 a long run ends inverted, with more its step has to be shorter
 DRIVEN_STEP = 0.6  # of dx / (c + |v|): a longer step is not stable with driven edges
 GAUSS = np.array([0.5 - 0.5 / sqrt(3), 0.5 + 0.5 / sqrt(3)])  # fractions of a face
+FORCE = (2, 3)  # columns of a grid's momentum_force
 ON = 1e-9  # fraction of a face: a corner that is so near to an edge is on it
 
 
@@ -158,7 +159,9 @@ class Surface:
         x = self.where(model)
         if basis.faces_carry:
             x, force = self.at_corners(model, force)
-        self.on_grid(push, model, x, force, grid.momentum_force)
+        weights, nodes = around(model, x)
+        for a, column in enumerate(FORCE):  # one after another: the same bits for any number of threads
+            np.add.at(grid.momentum_force[:, column], nodes.ravel(), (weights * force[:, a : a + 1]).ravel())
 
     def traction(self, model: Context) -> Floats:
         """Force per reference area (2S,2) at the time of x."""
@@ -195,20 +198,24 @@ class Surface:
 
     def move(self, model: Context) -> None:
         """Move the points with the new velocity of the grid, by a step."""
-        v = np.empty_like(self.x)
-        self.on_grid(look_up, model, self.where(model), model.grid.velocity_acceleration, v)
+        weights, nodes = around(model, self.where(model))
+        v = np.zeros_like(self.x)
+        for N, node in zip(weights.T, nodes.T, strict=True):
+            v += N[:, None] * model.grid.velocity_acceleration[node, :2]
         self.x += model.dt * v
 
     def where(self, model: Context) -> Floats:
         """Positions (2S,2) of the points on the grid: x, or X beside weights of the reference positions."""
         return self.X if model.basis.reference else self.x
 
-    @staticmethod
-    def on_grid(kernel: Callable[..., int], model: Context, x: Floats, *arrays: Floats) -> None:
-        """Call `push` or `look_up` for points x (n,2), with their two arrays. Raises RunFailed for one outside."""
-        g, (fill, K) = model.grid, field_of(model.basis)
-        if kernel(fill, K, x, *arrays[:-1], g.origin, 1.0 / g.dx, g.nx, g.ny, *arrays[-1:]) >= 0:
-            raise RunFailed(FailureKind.OUTSIDE_GRID, model.steps)
+
+def around(model: Context, x: Floats) -> tuple[Floats, Ints]:
+    """Weights (n,K) of the nodes around points x (n,2), and their numbers. Raises RunFailed for a point outside."""
+    g, (fill, K) = model.grid, field_of(model.basis)
+    weights, nodes = np.empty((len(x), K)), np.empty(len(x) * K, np.int64)
+    if weigh(fill, K, np.ascontiguousarray(x), g.origin, 1.0 / g.dx, g.nx, g.ny, weights, nodes) >= 0:
+        raise RunFailed(FailureKind.OUTSIDE_GRID, model.steps)
+    return weights, nodes.reshape(-1, K)
 
 
 def own_traction(particles: Particles, rows: Ints, N: Floats) -> Floats:

@@ -1,8 +1,8 @@
-"""Kernels of the edge of a body: forces from points to the nodes around them, and points that move with the grid."""
+"""Kernels of the edge of a body: hat functions at points, and the weights of the nodes around many of them."""
 
 import numpy as np
 
-from mpm_verify.solver._jit import BLOCK, F1, F2, f8, i8, kernel
+from mpm_verify.solver._jit import BLOCK, F1, F2, I1, f8, i8, kernel
 from mpm_verify.solver.weights import FILL, Fill, bilinear, outside
 
 
@@ -18,11 +18,11 @@ def hats(x, F, domain, ox, oy, inv_dx, nx, ny, x0, x1, y0, y1, table, node):
     return bad == 0
 
 
-@kernel(i8(Fill, i8, F2, F2, F1, f8, i8, i8, F2))
-def push(fill, K, x, force, origin, inv_dx, nx, ny, momentum_force):
-    """Add the forces (S,2) at points x (S,2) to those of the nodes; -1, or the first point of a block that is outside.
+@kernel(i8(Fill, i8, F2, F1, f8, i8, i8, F2, I1))
+def weigh(fill, K, x, origin, inv_dx, nx, ny, weights, nodes):
+    """Write the weights (S,K) of the nodes around points x (S,2), and their numbers, row by row, (S K,).
 
-    One after another: the same bits for any number of threads.
+    Returns -1, or the first point of a block that is outside.
     """
     xs = x.reshape(-1)
     none = np.zeros(4 * BLOCK)
@@ -37,31 +37,6 @@ def push(fill, K, x, force, origin, inv_dx, nx, ny, momentum_force):
             return lo
         for q in range(hi - lo):
             for k in range(K):
-                N = table[k * BLOCK + q]
-                i = node[k * BLOCK + q]
-                momentum_force[i, 2] += N * force[lo + q, 0]
-                momentum_force[i, 3] += N * force[lo + q, 1]
-    return -1
-
-
-@kernel(i8(Fill, i8, F2, F2, F1, f8, i8, i8, F2))
-def look_up(fill, K, x, velocity_acceleration, origin, inv_dx, nx, ny, values):
-    """Write the velocity of the grid at points x (S,2) to `values` (S,2); returns as `push`."""
-    xs = x.reshape(-1)
-    none = np.zeros(4 * BLOCK)
-    table = np.empty(3 * K * BLOCK)
-    node = np.empty(K * BLOCK, np.int64)
-    for lo in range(0, x.shape[0], BLOCK):
-        hi = min(lo + BLOCK, x.shape[0])
-        if not fill(
-            xs[2 * lo : 2 * hi], none, none, origin[0], origin[1], inv_dx, nx, ny, 0.0, nx - 1.0, 0.0, ny - 1.0, table,
-            node,
-        ):  # fmt: skip
-            return lo
-        for q in range(hi - lo):
-            for a in range(2):
-                value = 0.0
-                for k in range(K):
-                    value += table[k * BLOCK + q] * velocity_acceleration[node[k * BLOCK + q], a]
-                values[lo + q, a] = value
+                weights[lo + q, k] = table[k * BLOCK + q]
+                nodes[(lo + q) * K + k] = node[k * BLOCK + q]
     return -1
