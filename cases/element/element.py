@@ -91,11 +91,12 @@ class Element:
         return [State(*parts) for parts in zip(strains, rows, memories, strict=True)]
 
     def weight(self, strain: Floats) -> Floats:
-        """Stress that the kernel of a material in rate form sees, over the Cauchy stress, at strains (...,3 or 4)."""
-        if not self.material.kirchhoff:
-            return np.ones(strain.shape[:-1])
-        volume = strain[..., 0] + strain[..., 1] + strain[..., PLANE:].sum(axis=-1)
-        return np.asarray(np.exp(volume))
+        """Stress that the kernel of a material in rate form sees, over the Cauchy stress, at strains (...,n)."""
+        return self.volume(strain) if self.material.kirchhoff else np.ones(strain.shape[:-1])
+
+    def volume(self, strain: Floats) -> Floats:
+        """Volume over the initial one at strains (...,3 or 4)."""
+        return np.asarray(np.exp(strain[..., 0] + strain[..., 1] + strain[..., PLANE:].sum(axis=-1)))
 
     def solve(self, state: State, control: Control, guess: Floats, scale: Floats, corner: bool = False) -> State:
         """State after one step under a control; `scale` is the size of its residuals. Raises ElementFailed.

@@ -55,8 +55,7 @@ class Motion(Element):
         """Stress (n,4) and history (n,H) of a material in rate form at F (n,5)."""
         count = len(ends)
         old, new = (np.ascontiguousarray(F[:, FLAT]).ravel() for F in (np.tile(state.strain, (count, 1)), ends))
-        started, ended = (volume(F) ** self.material.kirchhoff for F in (state.strain[None], ends))
-        flat, de = np.tile(started * state.sigma, count), np.empty(3 * count)
+        flat, de = np.tile(self.weight(state.strain) * state.sigma, count), np.empty(3 * count)
         self.frame.unrotate(old, new, flat, de)
         sigma, history = flat.reshape(count, 4), np.tile(state.history, (count, 1))
         zz = 2 * (ends[:, 3] - state.strain[3]) / (ends[:, 3] + state.strain[3])
@@ -65,13 +64,13 @@ class Motion(Element):
         respond(self.material, self.constants, sigma, increments, history)
         flat = np.ascontiguousarray(sigma).ravel()
         self.frame.rotate(old, new, flat)
-        return flat.reshape(count, 4) / ended[:, None], history
+        return flat.reshape(count, 4) / self.weight(ends)[:, None], history
 
-
-def volume(F: Floats) -> Floats:
-    """Determinant (n,) of F (n,5)."""
-    J: Floats = (F[:, 0] * F[:, 1] - F[:, 2] * F[:, 4]) * F[:, 3]
-    return J
+    def volume(self, strain: Floats) -> Floats:
+        """Determinant of F (...,5)."""
+        xx, yy, xy, zz, yx = np.moveaxis(strain, -1, 0)
+        J: Floats = (xx * yy - xy * yx) * zz
+        return J
 
 
 def matrices(F: Floats) -> Floats:

@@ -13,6 +13,7 @@ import numpy as np
 
 from mpm_verify.solver.context import Context, fail
 from mpm_verify.solver.failure import FailureKind
+from mpm_verify.solver.kirchhoff import volume
 from mpm_verify.solver.material_model import Material
 from mpm_verify.solver.smoothing._project import project, strained, strains
 from mpm_verify.solver.state import Floats, Particles
@@ -145,5 +146,5 @@ class Smoothing:
 def volumes(particles: Particles) -> Floats:
     """Volumes V0 det F (P,) at the start of the step; a function of F keeps no F_old, and is not asked later."""
     F: Floats = particles.F_old if particles.F_old.size else particles.F.reshape(-1, 4)
-    V: Floats = particles.V0 * (F[:, 0] * F[:, 3] - F[:, 1] * F[:, 2])
+    V: Floats = particles.V0 * volume(F)
     return V
