@@ -271,7 +271,7 @@ def test_bad_names(
 
 @pytest.mark.parametrize(("A", "told"), [(0.05, True), (1e-6, False)])
 def test_strains_too_large_for_the_model_are_told(A: float, told: bool) -> None:
-    """Of linear elasticity, whose stress is that of its energy for small strains alone."""
+    """Linear elasticity, whose stress is that of its energy for small strains alone."""
     solution: Any = create(SOLUTIONS, f"axis_aligned:A={A}")
     material: Any = create(MATERIALS, "linear_elastic")
     spots = audit(manufacture(solution, material, material.rho0), solution, material).spots

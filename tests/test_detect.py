@@ -32,7 +32,7 @@ def row(kind: str = "order", **changed: str) -> Row:
 
 @pytest.mark.parametrize("one", [one for one in defects().values() if one.name != NONE], ids=lambda one: one.name)
 def test_a_defect_can_be_planted(one: Defect) -> None:
-    """Its old text stands in its file, what comes out is Python, and it is another program unless it is a placebo."""
+    """Each old text stands in its file, what comes out is Python, and it is another program unless it is a placebo."""
     text = (TOP / one.file).read_text()
     planted = replaced(text, one)
     compile(planted, one.file, "exec")
@@ -153,7 +153,7 @@ def test_the_list_is_one_json_document_too(capsys: pytest.CaptureFixture[str]) -
 
 @pytest.mark.slow
 def test_a_crash_a_hang_and_a_defect_are_caught_and_a_placebo_is_not(monkeypatch: pytest.MonkeyPatch) -> None:
-    """In copies of their own: the judge's checks alone, which take a second each."""
+    """Copies of their own: the judge's checks alone, which take a second each."""
     from mpm_verify.cases.detect import workshop
 
     asked = workshop.workshop().ask(defects()["exit-code"], "cpdi", ("rule", "norms"))

@@ -126,7 +126,7 @@ def test_points_lie_on_the_edge_with_its_length_and_normals(write: Write, method
 
 
 def test_the_first_forces_are_those_of_the_exact_fields(write: Write) -> None:
-    """Of a body in uniform stress at t: on all nodes inner forces and tractions cancel."""
+    """A body in uniform stress at t: on all nodes inner forces and tractions cancel."""
     model, comparison, _ = setup(run(write("piston", "pulled"), 8))
     exact, p, t = comparison.exact, model.particles, 0.005
     model.steps = round(t / model.dt)

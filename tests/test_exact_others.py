@@ -122,7 +122,7 @@ def moved(X: Any, case: Case) -> Any:
 
 @pytest.mark.parametrize("test", CASES)
 def test_the_toy_is_exact(test: str) -> None:
-    """With a margin: a tenth of what round-off may make. All that is there is judged."""
+    """A margin: a tenth of what round-off may make. All that is there is judged."""
     tested = outcomes(test, toy("none"))
     assert not missed(tested)
     assert all(one.residual <= 0.1 * one.bound for one in tested)

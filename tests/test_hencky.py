@@ -110,7 +110,7 @@ def test_the_stable_courant_number_of_what_is_nearly_incompressible(tmp_path: Pa
 
 
 def test_body_force_is_finite_where_nothing_is_deformed() -> None:
-    """At the start of axis_aligned F = I everywhere; 1e-9 of a period later the body force has hardly changed."""
+    """The start of axis_aligned, where F = I everywhere; 1e-9 of a period later the body force has hardly changed."""
     solution: Any = create(SOLUTIONS, "axis_aligned")
     b = manufacture(solution, HENCKY, HENCKY.rho0).b
     X = np.random.default_rng(3).uniform(0.1, 0.9, (20, 2))
@@ -138,7 +138,7 @@ def test_uniaxial_strain(stretch: float) -> None:
 
 @pytest.mark.parametrize("shear", [1e-9, 0.1, 1.0, 5.0])
 def test_simple_shear(shear: float) -> None:
-    """By asinh(g/2): tau_xy = 2 mu asinh(g/2) / sqrt(1 + g^2/4), normal stresses +/- g/2 of it."""
+    """Closed form by asinh(g/2): tau_xy = 2 mu asinh(g/2) / sqrt(1 + g^2/4), normal stresses +/- g/2 of it."""
     xy = 2 * MU * np.arcsinh(shear / 2) / np.sqrt(1 + shear**2 / 4)
     found = stress(HENCKY, [[[1.0, shear], [0.0, 1.0]]])[0]
     np.testing.assert_allclose(found, [shear / 2 * xy, -shear / 2 * xy, 0.0, xy], rtol=1e-14, atol=1e-15 * LAM)

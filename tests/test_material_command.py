@@ -151,7 +151,7 @@ def test_a_path_of_ones_own_is_shown_and_not_judged(
 def test_what_was_read_and_what_has_no_effect_is_told(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """On the terminal, in JSON and on the page: columns, the largest strain, and a rate where nothing turns."""
+    """Terminal, JSON and page: columns, the largest strain, and a rate where nothing turns."""
     path, out = tmp_path / "mine.csv", tmp_path / "out"
     path.write_text("time;EXX [%];eyy [%];ezz [%];gxy [%]\n0;0;0;0;0\n1;0;-0,1;0;0\n")
     words = ("material", "hypoelastic:rate=jaumann", "--path", str(path), "--steps", "4", "--out", str(out))
@@ -223,7 +223,7 @@ def test_the_correlation_is_the_default() -> None:
 
 
 def test_parameters_say_what_they_do() -> None:
-    """Of UBCSAND: which have no effect, which are not in the paper, which is our reading."""
+    """Parameters of UBCSAND: which have no effect, which are not in the paper, which is our reading."""
     usual = told_of(ubcsand.Ubcsand())
     factors = [f"hfac{n}" for n in range(1, 7)]
     assert [usual[name].partition(" ")[2] for name in factors] == ["(no effect in primary loading)"] * 6

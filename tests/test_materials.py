@@ -160,7 +160,7 @@ def test_objective_and_isotropic(name: str, angle: float) -> None:
 
 @pytest.mark.parametrize("name", HOOKEAN)
 def test_small_strain_limit(name: str) -> None:
-    """To first order all laws are Hooke's, in plane strain: sigma = lam tr e + 2 mu e."""
+    """First order: all laws are Hooke's, in plane strain: sigma = lam tr e + 2 mu e."""
     for law in parametrised(name):
         H = 1e-7 * np.random.default_rng(5).standard_normal((50, 2, 2))
         exx, eyy, exy = H[:, 0, 0], H[:, 1, 1], (H[:, 0, 1] + H[:, 1, 0]) / 2

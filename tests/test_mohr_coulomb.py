@@ -219,7 +219,7 @@ def test_the_frame_does_not_matter(name: str) -> None:
 
 @every_law
 def test_general_stress_by_its_eigenvalues(name: str) -> None:
-    """With shear in the plane: principal stresses by LAPACK, returned; the same axes."""
+    """Shear in the plane: principal stresses by LAPACK, returned; the same axes."""
     law, rng = law_of(name), np.random.default_rng(6)
     trial = np.column_stack([random_trials(), rng.uniform(-1e4, 1e4, COUNT)])
     out, _ = respond(law, trial)

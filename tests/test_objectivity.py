@@ -107,7 +107,7 @@ def test_figure2_by_a_rate_and_by_its_closed_form() -> None:
 
 @pytest.mark.parametrize("rate", WRONG)
 def test_figure2_sees_all_but_three_misreadings(rate: str) -> None:
-    """By a tenth of the stress, explicit_jaumann in few steps, stretched_frame at ten times the strain."""
+    """A tenth of the stress, explicit_jaumann in few steps, stretched_frame at ten times the strain."""
     block = replace(COARSE, E=5e4) if rate == "stretched_frame" else COARSE
     found = objectivity_kinematic.figure2(block, rate, 10 if rate == "explicit_jaumann" else 200)
     exact = objectivity_kinematic.exact_figure2(block, found["t"])
@@ -246,7 +246,7 @@ def test_words_take_their_numbers_from_the_runs() -> None:
 
 
 def test_simple_shear_as_the_words_say() -> None:
-    """At a moderate shear the shear stresses agree within 5 %, as is told, and not much further."""
+    """A moderate shear: the shear stresses agree within 5 %, as is told, and not much further."""
     for gamma, together in ((0.5 * MODERATE, True), (MODERATE, True), (2 * MODERATE, False)):
         s12 = [float(SIMPLE_SHEAR[rate](np.array([gamma]))[0, 2]) for rate in RIGHT]
         assert (max(s12) / min(s12) < 1.05) == together
@@ -311,7 +311,7 @@ def made(part: str, nu: float) -> Block:
 
 
 def test_several_blocks_are_told_apart(folder: Path) -> None:
-    """By what they differ in, in checks and headings, whatever that is."""
+    """Names by what they differ in, in checks and headings, whatever that is."""
     study: Study[Block] = build(Asked("objectivity", {"cells": [4], "nu": [0.3, 0.2]}), "")
     stored = read(folder).results
     results: dict[str, ObjectivityResult] = dict(stored)

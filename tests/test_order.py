@@ -81,7 +81,7 @@ def verdict(errors: Sequence[float], expectation: Expectation = SECOND, failed: 
 
 
 def said(got: Verdict) -> str:
-    """Its reason in words, of a study with the Courant number 0.4."""
+    """Reason in words, of a study with the Courant number 0.4."""
     return verdicts.reason(got.reason, (0.4,))
 
 
@@ -513,7 +513,7 @@ STALLS = Expectation(None, stall=1.5, source="measured")
 
 
 def test_all_runs_lost_is_non_convergence() -> None:
-    """By the registered reason alone, and every one of them."""
+    """Failures by the registered reason alone, and every one of them."""
     lost = Expectation(None, failed=FailureKind.INVERTED, source="measured")
     got = verdict([], lost, [DET] * 4)
     assert (got.outcome, got.reason.code, len(got.reason.failed)) == (PASS, ReasonCode.ALL_FAILED, 4)
@@ -540,7 +540,7 @@ def test_a_stall_is_recognised() -> None:
 
 @pytest.mark.parametrize("scatter", [0.0, 0.03])
 def test_a_stall_is_neither_invented_nor_overlooked(scatter: float) -> None:
-    """Of clean order 2 none passes as a stall, and with a floor of eight times the finest clean error nearly all do."""
+    """Clean order 2: none passes as a stall, and with a floor of eight times the finest clean error nearly all do."""
     rng, outcomes = np.random.default_rng(21), {name: Counter[Outcome]() for name in ("clean", "stalls")}
     for _ in range(DRAWS):
         noise, h = np.exp(scatter * rng.standard_normal(5)), cells(5)
@@ -645,7 +645,7 @@ def test_what_adds_in_the_square_is_found(fraction: float, code: str) -> None:
 
 @pytest.mark.parametrize("scale", [1e-300, 1e290])
 def test_errors_of_any_size_are_judged(scale: float) -> None:
-    """Their squares are no numbers."""
+    """Squares of such errors are no numbers."""
     levels = [Level(float(h), (scale * float(h**2 + 0.0005 * h),)) for h in cells(5)]
     got = judge(levels, SECOND, floor=0.0, dt_halved=levels[-1].errors[0])
     plain = verdict((cells(5) ** 2 + 0.0005 * cells(5)).tolist())
