@@ -38,3 +38,9 @@ def time_steps(solution: Any, dx: float, courant: float, whole: bool = False) ->
 def output_steps(steps: int, count: int) -> tuple[int, ...]:
     """Output steps: `count` of the numbers 1 to `steps` at most, spread evenly, the last among them."""
     return tuple(sorted({max(1, round(steps * k / count)) for k in range(1, count + 1)}))
+
+
+def boundary_kinds(solution: Any) -> tuple[str, ...]:
+    """Kinds of left, right, bottom, top of a solution, which may state one for all."""
+    given = solution.boundary
+    return (given,) * 4 if isinstance(given, str) else tuple(given)

@@ -13,6 +13,7 @@ import numpy as np
 import sympy as sp
 
 from mpm_verify.mms.blind_spots import OPEN, SIDES
+from mpm_verify.mms.discretisation import boundary_kinds
 from mpm_verify.mms.manufacture import Manufactured
 from mpm_verify.solver.layout import Layout, shared_corners
 from mpm_verify.solver.state import Floats
@@ -172,9 +173,9 @@ def measure(exact: Manufactured, solution: Any, material: WaveMaterial) -> dict[
 
 def open_sides(solution: Any) -> dict[str, float]:
     """Sides that are pulled or prescribed, as codes of OPEN; of one that nobody named so, the code of `found`."""
-    given, named = solution.boundary, getattr(solution, "named", tuple)() is not None
-    kinds = (given,) * len(SIDES) if isinstance(given, str) else given
-    return {side: OPEN[kind if named else "found"] for side, kind in zip(SIDES, kinds, strict=True) if kind in OPEN}
+    named = getattr(solution, "named", tuple)() is not None
+    kinds = zip(SIDES, boundary_kinds(solution), strict=True)
+    return {side: OPEN[kind if named else "found"] for side, kind in kinds if kind in OPEN}
 
 
 def mirror(u: Floats, sampler: Sampler, solution: Any, layout: Layout, times: Floats) -> float:

@@ -3,24 +3,19 @@
 from collections.abc import Mapping
 from typing import Any
 
+from mpm_verify.mms.discretisation import boundary_kinds
 from mpm_verify.mms.manufacture import Manufactured
 from mpm_verify.solver.boundary import Kind
 from mpm_verify.solver.layout import Layout
-from mpm_verify.solver.surface import SIDES, Given, Surface, faces, open_sides
+from mpm_verify.solver.surface import Given, Surface, faces, open_sides
 
 WALLS: Mapping[str, Kind] = {"fixed": "fixed", "roller": "roller", "free": "free", "pulled": "free",
                              "prescribed": "free"}  # fmt: skip
 
 
-def kinds(solution: Any) -> tuple[str, ...]:
-    """Kinds of left, right, bottom, top of a solution."""
-    given = solution.boundary
-    return (given,) * len(SIDES) if isinstance(given, str) else tuple(given)
-
-
 def walls(solution: Any) -> tuple[Kind, Kind, Kind, Kind]:
     """Kinds of the walls on the four sides: none beside an edge that is pulled or prescribed."""
-    left, right, bottom, top = (WALLS[kind] for kind in kinds(solution))
+    left, right, bottom, top = (WALLS[kind] for kind in boundary_kinds(solution))
     return left, right, bottom, top
 
 
@@ -36,7 +31,7 @@ def surface(solution: Any, exact: Manufactured, layout: Layout) -> Surface | Non
     layout
         Layout of the particles.
     """
-    sides = open_sides(kinds(solution))
+    sides = open_sides(boundary_kinds(solution))
     if not sides:
         return None
     return Surface(faces(layout, solution.lower, solution.upper, sides), Given(exact.P, exact.x))

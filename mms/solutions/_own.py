@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from mpm_verify.mms.discretisation import boundary_kinds
 from mpm_verify.solver.layout import CENTRED, Layout, Offset, rectangle
 from mpm_verify.solver.own_file import derived as file_derived
 from mpm_verify.solver.own_file import guarded, module_of, shortened
@@ -225,8 +226,7 @@ def sides(solution: Any) -> tuple[str, ...]:
     """Kinds of left, right, bottom, top of a solution of either form."""
     if isinstance(solution, Own):
         return solution.sides
-    boundary = solution.boundary
-    return (boundary,) * 4 if isinstance(boundary, str) else tuple(boundary)
+    return boundary_kinds(solution)
 
 
 def derived(solution: Any) -> str:
