@@ -1,8 +1,11 @@
 """The campaign of planted defects: data, copies, mutants, rates, the quoted certificate, each check failing once."""
 
 import json
+import os
+import signal
 import subprocess
 import sys
+import time
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -185,3 +188,33 @@ def test_few_defects_are_told_one_by_one(count: int, monkeypatch: pytest.MonkeyP
     record = SimpleNamespace(analysis=SimpleNamespace(more=SimpleNamespace(rows=rows)))
     terminal.show(cast(Any, record), None)
     assert told == (["one-0, cpdi: exact FAIL"] if count == 1 else [""])
+
+
+@pytest.mark.slow
+def test_a_campaign_that_was_killed_goes_on_and_says_the_same(tmp_path: Path) -> None:
+    """What was stored before the kill stays as it is, and the outcomes are those of a campaign that ran through."""
+    names = ("none", "exit-code", "two-levels", "placebo-logs")
+    command = [sys.executable, "-m", "mpm_verify", "detect", "--defect", ",".join(names), "--checks", "quick"]
+
+    def outcomes(folder: Path) -> dict[str, Any]:
+        found = [json.loads(file.read_text()) for file in sorted((folder / "runs").glob("*.json"))]
+        return {one["run"]["defect"]: (one["outcomes"], one["evidence"]) for one in found}
+
+    through, killed = tmp_path / "through", tmp_path / "killed"
+    done = subprocess.run([*command, "--out", str(through)], capture_output=True, text=True, timeout=900)
+    assert done.returncode in (0, 1), done.stderr
+    with subprocess.Popen(
+        [*command, "--out", str(killed)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True
+    ) as going:
+        while not (first := list((killed / "runs").glob("*.json"))) and going.poll() is None:
+            time.sleep(0.05)
+        os.killpg(going.pid, signal.SIGKILL)
+    assert len(outcomes(killed)) < len(names)
+    written = {file: file.stat().st_mtime_ns for file in first}
+    again = subprocess.run([*command, "--out", str(killed)], capture_output=True, text=True, timeout=900)
+    assert again.returncode == done.returncode
+    assert {file: file.stat().st_mtime_ns for file in first} == written
+    assert outcomes(killed) == outcomes(through)
+    assert {name: told[0]["rule"] for name, told in outcomes(through).items()} == {
+        "none": "PASS", "exit-code": "FAIL", "two-levels": "FAIL", "placebo-logs": "PASS",
+    }  # fmt: skip

@@ -105,14 +105,22 @@ def davis(material: Any) -> list[Check]:
 
 
 def frictionless(material: Any) -> list[Check]:
-    """Check of phi = 0: simple shear ends at the cohesion, that of the compression cone at 2 / sqrt(3) of it."""
+    """Checks of phi = 0: simple shear ends at the cohesion, that of the compression cone at 2 / sqrt(3) of it; no apex.
+
+    So an isotropic tension of ten times the cohesion, or at the cut-off if that is lower, stays as it is.
+    """
     if material.friction_angle != 0:
         return []
     known = 2 / np.sqrt(3) if getattr(material, "cone", "") == "compression" else 1.0
     end = run(material, "shear_stress", 8 * material.c / material.mu, 10 * material.c)
     found = float(end.sigma[-1, 3]) / material.c
+    tension = min(10 * material.c, getattr(material, "sigma_t", np.inf))
+    sigma = np.array([tension, tension, tension, 0.0])
+    material.respond(material.constants(), sigma, np.zeros(3), np.zeros(len(material.memory)))
+    moved = float(np.abs(sigma[:3] - tension).max()) / material.c
     return [
-        Check("Simple shear at failure", "shear stress over cohesion, phi = 0", found, known, "absolute", FORM, 1e-12)
+        Check("Simple shear at failure", "shear stress over cohesion, phi = 0", found, known, "absolute", FORM, 1e-12),
+        Check("Returns", "isotropic tension that changes, over cohesion, phi = 0", moved, 0.0, "absolute", FORM, 0.0),
     ]
 
 

@@ -23,7 +23,13 @@ Answer = tuple[str, str]
 SOILS = ("mohr_coulomb", "drucker_prager", "ubcsand", "hypoelastic", "linear_elastic")
 HENCKY = ("hencky", "hencky_rate")
 RATE_FORM = ("mohr_coulomb", "drucker_prager", "ubcsand")
-FRICTIONLESS = ("mohr_coulomb:phi=0,c=1000", "drucker_prager:phi=0,c=1000")
+FRICTIONLESS = (
+    "mohr_coulomb:phi=0,c=1000",
+    "mohr_coulomb:phi=0,c=1000,sigma_t=1e5",
+    "drucker_prager:phi=0,c=1000",
+    "drucker_prager:phi=0,c=1000,cone=compression",
+)
+DILATANT = ("drucker_prager:psi=20",)
 VARIANTS = (
     "mohr_coulomb:c=1000,sigma_t=500",
     "mohr_coulomb:c=1000,sigma_t=1e6",
@@ -104,7 +110,7 @@ def exact(subject: Subject) -> Answer:
 
 def material(subject: Subject) -> Answer:
     """Element tests of every constitutive model, along the paths that tell most in least time."""
-    models = ("neo_hookean", *SOILS, *FRICTIONLESS)
+    models = ("neo_hookean", *SOILS, *FRICTIONLESS, *DILATANT)
     for model in models:
         tests = PATHS + TRIAXIAL * (model.partition(":")[0] in RATE_FORM)
         asked = Asked("element", {"material": (model,), "test": tests, "steps": (50,)})
