@@ -12,10 +12,10 @@ test: .venv/.installed
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
-	$(BIN)/pytest
+	$(BIN)/pytest -n auto --dist loadscope
 
 slow: .venv/.installed
-	$(BIN)/pytest -m slow
+	$(BIN)/pytest -m slow -n auto --dist loadscope
 
 # Errors that later runs are held against; a change of a row is a change of the numbers.
 recorded: .venv/.installed
