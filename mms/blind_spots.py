@@ -41,6 +41,7 @@ class BlindSpotCode(StrEnum):
     LOAD = "load"  # body force against inertia
     STRESS = "stress"  # divergence of the stress against body force and inertia
     PLANE = "plane"  # one-dimensional motion
+    HOOP = "hoop"  # what an axisymmetric program has beside a plane one
     MODEL = "model"  # strains too large for the constitutive model, where they are
     ORDERS = "orders"  # what an observed order does not show, of any solution
     CONSTANTS = "constants"  # what leaves the order as it is, of any solution
@@ -73,6 +74,16 @@ SEEN_BY = {  # solutions of the library that see what others are blind to
     BlindSpotCode.STRESS: ("axis_aligned", "clamped_shear"),
     BlindSpotCode.PLANE: ("axis_aligned", "clamped_shear"),
 }
+LINE = (  # what a solution in one dimension may see at all
+    BlindSpotCode.VOLUME, BlindSpotCode.GRADIENT, BlindSpotCode.START, BlindSpotCode.VELOCITY, BlindSpotCode.AMPLITUDE,
+    BlindSpotCode.CROSSING, BlindSpotCode.WALLS, BlindSpotCode.LOAD, BlindSpotCode.STRESS,
+)  # fmt: skip
+SEEN_BY_LINE: dict[BlindSpotCode, tuple[str, ...]] = {
+    code: ("bump1d",) if code is BlindSpotCode.START else ("bar1d",) for code in LINE
+}
+SEEN_BY_AXISYMMETRIC: dict[BlindSpotCode, tuple[str, ...]] = {
+    code: ("cylinder_rz",) for code in (*SEEN_BY, BlindSpotCode.HOOP) if code is not BlindSpotCode.MIRROR
+}
 SEEN_BY_SOLID: dict[BlindSpotCode, tuple[str, ...]] = {  # of three dimensions
     code: ("swirl3d",) for code in SEEN_BY if code is not BlindSpotCode.WALLS
 }
@@ -84,17 +95,20 @@ def volume_kept(n: Numbers) -> bool:
 
 
 def walls_idle(n: Numbers) -> bool:
-    """Whether no particle slides along a wall that it presses on."""
+    """Whether no particle slides along a wall that it presses on; in one dimension whether none holds the body."""
     moves, through, pulls = (n[f"edge_{what}"] > ROUND for what in ("motion", "normal_motion", "traction"))
+    if n.get("dimension") == 1:  # where nothing slides: whether an end is held
+        return not pulls
     return bool(n["edge_free"]) or not (moves and pulls and not through)
 
 
 def one_dimensional(n: Numbers) -> bool:
-    """Whether one component of u, or one of its gradient, is all but zero."""
-    return n["weaker_component"] <= FAINT or n["weaker_direction"] <= FAINT
+    """Whether one component of u, or one of its gradient, is all but zero, or there is but one."""
+    return n.get("dimension") == 1 or n["weaker_component"] <= FAINT or n["weaker_direction"] <= FAINT
 
 
-RULES: dict[BlindSpotCode, tuple[Callable[[Numbers], bool], tuple[str, ...]]] = {  # when it is blind, what tells it
+Rules = dict[BlindSpotCode, tuple[Callable[[Numbers], bool], tuple[str, ...]]]
+RULES: Rules = {  # when it is blind, what tells it
     BlindSpotCode.SHEAR: (lambda n: n["shear"] <= FAINT * n["strain"], ("shear",)),
     BlindSpotCode.ROTATION: (lambda n: n["rotation_deg"] < TURNED, ("rotation_deg",)),
     BlindSpotCode.ORDER: (lambda n: n["order"] <= FAINT * n["strain"] or n["strain"] < SMALL, ("order", "strain")),
@@ -111,19 +125,32 @@ RULES: dict[BlindSpotCode, tuple[Callable[[Numbers], bool], tuple[str, ...]]] = 
     BlindSpotCode.STRESS: (lambda n: n["stress_force"] <= WEAK, ("stress_force",)),
     BlindSpotCode.PLANE: (one_dimensional, ("weaker_component", "weaker_direction")),
 }
+AROUND: Rules = {  # of axisymmetry alone
+    BlindSpotCode.HOOP: (
+        lambda n: n["hoop_stress"] <= FAINT or n["hoop_strain"] <= FAINT,
+        ("hoop_stress", "hoop_terms", "hoop_strain"),
+    ),
+}
+
+
+def rules_of(n: Numbers) -> Rules:
+    """Rules that say anything: some do not of one dimension and of axisymmetry, and one is of that alone."""
+    if n.get("dimension") == 1:
+        return {code: RULES[code] for code in (*LINE, BlindSpotCode.PLANE)}
+    if n.get("axisymmetric"):
+        return {code: rule for code, rule in RULES.items() if code is not BlindSpotCode.MIRROR} | AROUND
+    return RULES
 
 
 def judge(measured: Numbers) -> tuple[BlindSpot, ...]:
     """One BlindSpot for each rule, in the order of the rules, and what holds for every solution last."""
-    solid = "dimension" in measured  # only that of three dimensions is told
-    known = {**measured, "finest": float(SOLID_FINEST if solid else FINEST)}
+    state = tuple(name for name in ("dimension", "axisymmetric") if name in measured)  # of plane strain none is told
+    known = {**measured, "finest": float(SOLID_FINEST if measured.get("dimension") == 3 else FINEST)}
     moves = tuple(side for side in SIDES if side in measured)  # pulled or prescribed
     more = {BlindSpotCode.WALLS: moves}
     rules = (
-        BlindSpot(
-            code, blind(known), {name: known[name] for name in (*names, *more.get(code, ()), *["dimension"] * solid)}
-        )
-        for code, (blind, names) in RULES.items()
+        BlindSpot(code, blind(known), {name: known[name] for name in (*names, *more.get(code, ()), *state)})
+        for code, (blind, names) in rules_of(known).items()
     )
     edges = BlindSpot(BlindSpotCode.EDGES, False, {side: measured[side] for side in moves})
     model = BlindSpot(BlindSpotCode.MODEL, True, {"strain": measured["strain"]})

@@ -9,8 +9,13 @@ from mpm_verify.solver.state import Floats
 
 
 def dimension(solution: Any) -> int:
-    """Number of coordinates of a solution: 2, plane strain, or 3."""
+    """Number of coordinates of a solution: 1, uniaxial strain; 2, plane strain or axisymmetric; or 3."""
     return len(solution.lower)
+
+
+def axisymmetric(solution: Any) -> bool:
+    """Whether the two coordinates of a solution, or of its class, are the radius and the axis."""
+    return bool(getattr(solution, "axisymmetric", False))
 
 
 def width(solution: Any) -> float:

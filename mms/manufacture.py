@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mpm_verify.mms.discretisation import dimension
+from mpm_verify.mms.discretisation import axisymmetric, dimension
 from mpm_verify.mms.energy import Energy, check_energy
 from mpm_verify.mms.printed import folder, function, printed
 from mpm_verify.solver.cache_folder import kept
@@ -23,7 +23,9 @@ Field = Callable[[Floats, float], Floats]
 
 @dataclass(frozen=True)
 class Manufactured:
-    """Exact fields as functions of (X, t): reference positions X (P,d), t a number; d = 2 is plane strain, or 3.
+    """Exact fields as functions of (X, t): reference positions X (P,d), t a number; d = 2 is plane strain.
+
+    d = 1 is uniaxial strain. In axisymmetry X is (radius, axis), and F and P are (P,5): xx, xy, yx, yy, and zz around.
 
     Parameters
     ----------
@@ -82,7 +84,7 @@ class Manufactured:
 
     @cached_property
     def sigma(self) -> Field:
-        """Cauchy stress sigma (P,4): xx, yy, zz, xy, tension positive; or (P,6), with yz and xz last."""
+        """Cauchy stress sigma (P,4): xx, yy, zz, xy, tension positive; or (P,6), with yz and xz last, or (P,1): xx."""
         return self._function("sigma", 0)
 
     @cached_property
@@ -108,7 +110,8 @@ class Manufactured:
 
     def _function(self, name: str, rank: int) -> Field:
         """Function that a field is printed as, of vectors and tensors of a rank, or of 0: as they are listed."""
-        shape = (dimension(self.solution),) * rank or (-1,)
+        listed = rank == 0 or (rank == 2 and axisymmetric(self.solution))
+        shape = (-1,) if listed else (dimension(self.solution),) * rank
 
         def source() -> str:
             f = self.forced()

@@ -13,14 +13,15 @@ import numpy as np
 import sympy as sp
 
 from mpm_verify.mms.blind_spots import OPEN, SIDES
-from mpm_verify.mms.discretisation import boundary_kinds
+from mpm_verify.mms.components import square
+from mpm_verify.mms.discretisation import axisymmetric, boundary_kinds
 from mpm_verify.mms.manufacture import Manufactured
 from mpm_verify.solver.layout import Layout, shared_corners
 from mpm_verify.solver.state import Floats
 
 TIMES = 33  # even steps hit the extremes of a wave whose period divides the duration
 CELLS = 16  # on the width of the body, four positions in each
-SOLID_CELLS = 8  # of a body in three dimensions, eight positions in each
+SOLID_CELLS = 8  # of a body in three dimensions, eight positions in each; in one dimension two in each
 SHARP = 0.8  # cosine of half the angle between two faces: at the corners of a rectangle there is no one normal
 
 
@@ -37,7 +38,8 @@ class WaveMaterial(Protocol):
 class Sample:
     """Fields at T times and P reference positions: u, v, acceleration, b (T,P,d); F, P (T,P,d,d); sigma (T,P,4 or 6).
 
-    `slope` (T,P,d^3) are the derivatives of F by the coordinates.
+    `slope` (T,P,d^3) are the derivatives of F by the coordinates. In axisymmetry F and P are (T,P,3,3), the radius, the
+    axis and around it.
     """
 
     u: Floats
@@ -52,7 +54,7 @@ class Sample:
     @property
     def J(self) -> Floats:
         """Determinant of F, (T,P)."""
-        if self.u.shape[-1] == 3:
+        if self.F.shape[-1] != 2:
             return np.linalg.det(self.F)
         J: Floats = self.F[..., 0, 0] * self.F[..., 1, 1] - self.F[..., 0, 1] * self.F[..., 1, 0]
         return J
@@ -61,6 +63,8 @@ class Sample:
     def turned(self) -> Floats:
         """Angle of the rotation R of F = R U, radians, (T,P)."""
         F = self.F
+        if self.u.shape[-1] == 1:
+            return np.zeros(F.shape[:2])
         if self.u.shape[-1] == 2:
             return np.arctan2(F[..., 1, 0] - F[..., 0, 1], F[..., 0, 0] + F[..., 1, 1])
         left, _, right = np.linalg.svd(F)
@@ -74,7 +78,7 @@ class Sampler:
 
     def __init__(self, exact: Manufactured) -> None:
         f = exact.fields
-        X_t, inner = (*f.X, f.t), list(f.inner)
+        X_t, inner, self.count = (*f.X, f.t), list(f.inner), len(f.F)
         self.F: Any = sp.lambdify(X_t, f.F, "numpy", cse=True)
         self.first: Any = sp.lambdify(X_t, [*f.u, *f.v, *f.inner.values()], "numpy", cse=True)
         self.last: Any = sp.lambdify(inner, [*f.P, *f.sigma, *f.b], "numpy", cse=True)
@@ -85,17 +89,16 @@ class Sampler:
         with np.errstate(all="ignore"):
             first = filled(self.first(*X.T, times[:, None]), shape)
             last = filled(self.last(*np.moveaxis(first[..., 2 * d :], -1, 0)), shape)
-        u, v, F, slope, acceleration = np.split(first, np.cumsum([d, d, d**2, d**3]), axis=-1)
-        P, sigma, b = np.split(last, (d**2, last.shape[-1] - d), axis=-1)
-        return Sample(u, v, F.reshape(*shape, d, d), slope, acceleration, P.reshape(*shape, d, d), sigma, b)
+        parts = np.cumsum([d, d, self.count, self.count * d, d])
+        u, v, F, slope, acceleration, _ = np.split(first, parts, axis=-1)
+        P, sigma, b = np.split(last, (self.count, last.shape[-1] - d), axis=-1)
+        return Sample(u, v, square(F), slope, acceleration, square(P), sigma, b)
 
     def rate(self, X: Floats, times: Floats) -> Floats:
-        """Rate dF/dt (T,P,d,d) by a central difference, to 1e-6: expressions would double what there is to compile."""
-        h = 1e-4 * float(np.ptp(times))
-        shape, d = (len(times), len(X)), X.shape[1]
+        """Rate dF/dt by a central difference, to 1e-6: expressions would double what there is to compile."""
+        h, shape = 1e-4 * float(np.ptp(times)), (len(times), len(X))
         ahead, behind = (filled(self.F(*X.T, times[:, None] + s), shape) for s in (h, -h))
-        rate: Floats = ((ahead - behind) / (2 * h)).reshape(*shape, d, d)
-        return rate
+        return square(ahead - behind) / (2 * h)
 
 
 def filled(values: Any, shape: tuple[int, ...]) -> Floats:
@@ -107,9 +110,9 @@ def boundary(layout: Layout) -> tuple[Floats, Floats]:
     """Corners of domains on the edge of the body, with unit normals outwards, both (B,2); sharp corners are left out.
 
     A face of one domain alone is on the edge. The normal at a corner is the mean of those of its two faces. Of a block
-    the middles of the domains' faces, and its normals, (B,3).
+    the middles of the domains' faces, and its normals, (B,3); of a line its ends, (B,1).
     """
-    if layout.X.shape[1] == 3:
+    if layout.X.shape[1] != 2:
         return faces_of_a_block(layout)
     X, start = shared_corners(layout)
     faces = np.stack([start, np.roll(start, -1, axis=1)], axis=-1).reshape(-1, 2)
@@ -125,12 +128,12 @@ def boundary(layout: Layout) -> tuple[Floats, Floats]:
 
 
 def faces_of_a_block(layout: Layout) -> tuple[Floats, Floats]:
-    """Middles of the faces of domains on the six faces of a block, with unit normals outwards, (B,3) each."""
-    found = []
-    for axis, way in product(range(3), (-1, 1)):
+    """Middles of the faces of domains on the six faces of a block, or ends, with unit normals outwards, (B,d) each."""
+    found, d = [], layout.X.shape[1]
+    for axis, way in product(range(d), (-1, 1)):
         X = layout.X + way * layout.r0[:, axis]
         outermost = X[:, axis] == way * (way * X[:, axis]).max()
-        found.append((X[outermost], np.tile(way * np.eye(3)[axis], (int(outermost.sum()), 1))))
+        found.append((X[outermost], np.tile(way * np.eye(d)[axis], (int(outermost.sum()), 1))))
     X, normal = (np.concatenate(parts) for parts in zip(*found, strict=True))
     return X, normal
 
@@ -139,14 +142,14 @@ def measure(exact: Manufactured, solution: Any, material: WaveMaterial) -> dict[
     """Measure a solution: numbers without units, lengths relative to the body's extent in x, as cells are."""
     extent = solution.upper - solution.lower
     width, times = float(extent[0]), np.linspace(0.0, solution.duration, TIMES)
-    d, sampler = len(extent), Sampler(exact)
-    layout = solution.layout(width / (CELLS if d == 2 else SOLID_CELLS), 2**d)
+    d, sampler, around = len(extent), Sampler(exact), axisymmetric(solution)
+    layout = solution.layout(width / (SOLID_CELLS if d == 3 else CELLS), 2**d)
     s = sampler(layout.X, times)
-    shift, L = s.F - np.eye(d), sampler.rate(layout.X, times) @ np.linalg.inv(s.F)
+    shift, L = s.F - np.eye(s.F.shape[-1]), sampler.rate(layout.X, times) @ np.linalg.inv(s.F)
     inertia, load = largest(s.acceleration), largest(s.b)
     numbers = {
         "strain": largest(shift),  # largest component of F - I
-        "shear": max(largest(s.F[..., i, j]) for i, j in permutations(range(d), 2)),
+        "shear": max((largest(s.F[..., i, j]) for i, j in permutations(range(d), 2)), default=0.0),
         "rotation_deg": float(np.degrees(np.abs(s.turned).max())),  # angle of R in F = R U
         "spin": ratio(largest(L - L.swapaxes(-1, -2)), largest(L)),  # skew part of the velocity gradient
         "order": ratio(largest(s.F @ L - L @ s.F), largest(L)),  # whether F and L commute
@@ -161,14 +164,30 @@ def measure(exact: Manufactured, solution: Any, material: WaveMaterial) -> dict[
         "stress": largest(s.sigma) / (material.rho0 * material.wave_speed() ** 2),
         "weaker_component": ratio(min(largest(s.u[..., k]) for k in range(d)), largest(s.u)),
         "weaker_direction": ratio(min(largest(shift[..., :, k]) for k in range(d)), largest(shift)),
-        "mirror": mirror(s.u, sampler, solution, layout, times),
     }
+    if d > 1 and not around:
+        numbers["mirror"] = mirror(s.u, sampler, solution, layout, times)
+    numbers |= hoop(s, layout.X[:, 0], material.rho0, max(inertia, load)) if around else {}
     moves = open_sides(solution) if d == 2 else {}
     numbers |= at_the_edge(s, sampler, layout, times, least_stress(material), moves)
     numbers |= {"edge_free": float(solution.boundary == "free"), **moves}
     if getattr(material, "small_strain", False):
         numbers["small_strain"] = 1.0
+    if around:
+        numbers["axisymmetric"] = 1.0
     return numbers if d == 2 else {**numbers, "dimension": float(d)}
+
+
+def hoop(s: Sample, radius: Floats, rho0: float, force: float) -> dict[str, float]:
+    """Terms of the momentum balance over the radius, as fractions of the force, and the hoop part of the strain."""
+    around = s.P[..., 2, 2]
+    return {
+        "hoop_stress": ratio(largest(around / radius) / rho0, force),
+        "hoop_terms": ratio(
+            max(largest((s.P[..., 0, 0] - around) / radius), largest(s.P[..., 1, 0] / radius)) / rho0, force
+        ),
+        "hoop_strain": ratio(largest(s.F[..., 2, 2] - 1), largest(s.F - np.eye(3))),
+    }
 
 
 def open_sides(solution: Any) -> dict[str, float]:
@@ -210,10 +229,11 @@ def at_the_edge(
         side = 2 * np.abs(normal).argmax(axis=1) + (normal.sum(axis=1) > 0)
         X, normal = (part[[SIDES[k] not in moves for k in side]] for part in (X, normal))
     edge, u, P = sampler(X, times), largest(s.u), max(largest(s.P), least)
+    traction = edge.P[..., : X.shape[1], : X.shape[1]] * normal[:, None, :]
     return {
         "edge_motion": ratio(largest(edge.u), u),
         "edge_normal_motion": ratio(largest((edge.u * normal).sum(axis=-1)), u),
-        "edge_traction": ratio(largest((edge.P * normal[:, None, :]).sum(axis=-1)), P),
+        "edge_traction": ratio(largest(traction.sum(axis=-1)), P),
     }
 
 

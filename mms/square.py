@@ -1,6 +1,6 @@
-"""Bases of the solutions on a square and on a cube: the domain, the reference speed and the duration."""
+"""Bases of the solutions on a line, a square and a cube, and around an axis: domain, reference speed and duration."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
 from typing import Any, ClassVar
 
@@ -38,12 +38,12 @@ class Square:
 
     @property
     def lower(self) -> Floats:
-        """Lower corner of the domain, (2,), of a cube (3,)."""
+        """Lower corner of the domain, (2,), of a cube (3,), of a line (1,)."""
         return np.zeros(self.coordinates)
 
     @property
     def upper(self) -> Floats:
-        """Upper corner of the domain, (2,), of a cube (3,)."""
+        """Upper corner of the domain, (2,), of a cube (3,), of a line (1,)."""
         return np.full(self.coordinates, self.L)
 
     def layout(self, dx: float, ppc: int, offset: Offset = CENTRED) -> Layout:
@@ -84,3 +84,25 @@ class Cube(Square):
     """Body of a solution in three dimensions, on a cube: for other solvers, as the reference solver has two."""
 
     coordinates: ClassVar[int] = 3
+
+
+@dataclass(frozen=True)
+class Line(Square):
+    """Body of a solution in one dimension, in uniaxial strain: for other solvers, as the reference solver has two."""
+
+    coordinates: ClassVar[int] = 1
+
+
+@dataclass(frozen=True)
+class Revolved(Square):
+    """Body of an axisymmetric solution, a square of radius X and axis Y: for other solvers.
+
+    Volumes are per radian: the area of a domain times the radius of its middle, which is exact.
+    """
+
+    axisymmetric: ClassVar[bool] = True
+
+    def layout(self, dx: float, ppc: int, offset: Offset = CENTRED) -> Layout:
+        """Layout of square domains, `ppc` in a cell of side dx, with volumes per radian."""
+        flat = super().layout(dx, ppc, offset)
+        return replace(flat, V0=flat.V0 * flat.X[:, 0])

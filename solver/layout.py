@@ -19,12 +19,12 @@ class Layout:
     Parameters
     ----------
     X
-        Reference positions (P,2), or (P,3).
+        Reference positions (P,2), or (P,3), or (P,1).
     V0
-        Areas (P,), or volumes, of the parallelograms of `r0`, and of the pieces of the body that the particles stand
-        for.
+        Areas (P,), or volumes or lengths, of the parallelograms of `r0`, and of the pieces of the body that the
+        particles stand for; in axisymmetry volumes per radian.
     r0
-        Half side vectors (P,2,2), or (P,3,3), one a row.
+        Half side vectors (P,2,2), or (P,3,3), or (P,1,1), one a row.
     bent
         Corners (P,4,2) of those pieces where they are not the parallelograms.
     """
@@ -78,7 +78,7 @@ def per_side(ppc: int, dimension: int = 2) -> int:
     """
     side: int = round(max(ppc, 0) ** (1 / dimension))
     if side < 1 or side**dimension != ppc:
-        power, choices = ("square", "1, 4, 9, 16") if dimension == 2 else ("cube", "1, 8, 27, 64")
+        power, choices = (("whole", "1, 2, 3, 4"), ("square", "1, 4, 9, 16"), ("cube", "1, 8, 27, 64"))[dimension - 1]
         raise ValueError(f"{ppc} particles per cell is not a {power} number; choose {choices}, ...")
     return side
 
@@ -93,7 +93,7 @@ def rectangle(lower: Floats, upper: Floats, dx: float, ppc: int, offset: Offset 
     dx
         Side of a grid cell.
     ppc
-        Particles in each cell, a square number; of a block a cube number.
+        Particles in each cell, a square number; of a block a cube number, of a line any number.
     offset
         Shift of all faces between particles along x and y, as a fraction of their spacing, each in (-1/2, 1/2). The
         body's own edges stay, so the first and last domains are wider or narrower. A block takes none.

@@ -3,13 +3,17 @@
 from functools import cache
 from pathlib import Path
 
-from mpm_verify.mms.discretisation import dimension
+from mpm_verify.mms.discretisation import axisymmetric, dimension
 from mpm_verify.mms.export.case import Exported
 from mpm_verify.reports.export.case_folder import write
 from mpm_verify.solver.plugins import SOLUTIONS, available, create
 from mpm_verify.verify.commands.export import made
 
-PLANE, SOLID = ([name for name in available(SOLUTIONS) if dimension(create(SOLUTIONS, name)) == d] for d in (2, 3))
+AROUND = [name for name in available(SOLUTIONS) if axisymmetric(create(SOLUTIONS, name))]
+LINE, PLANE, SOLID = (
+    [name for name in available(SOLUTIONS) if dimension(create(SOLUTIONS, name)) == d and name not in AROUND]
+    for d in (1, 2, 3)
+)
 
 
 @cache

@@ -328,7 +328,7 @@ REFUSED = {
     "no square": (["mms", "--dim", "3", "--ppc", "8", "--solver", OURS], "not a square number"),
     "export no cube": (["export", "bump3d", "--ppc", "9", "--to", "case"], "not a cube number"),
     "export in two": (["export", "swirl3d", "--dim", "2", "--to", "case"], "three dimensions"),
-    "export in one": (["export", "bump", "--dim", "1", "--to", "case"], "dim = 1 must be 2"),
+    "export in one": (["export", "bump", "--dim", "1", "--to", "case"], "dim = 1 cannot be; take bar1d or bump1d"),
     "too many": (["export", "bump3d", "--cells", "128", "--to", "case"], "particles are too many"),
 }
 

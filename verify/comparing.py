@@ -12,9 +12,10 @@ from mpm_verify.cases.mms.digits.examine import Examined, Tick, examine
 from mpm_verify.cases.mms.digits.records import Compared
 from mpm_verify.cases.mms.digits.reference import Scheme
 from mpm_verify.cases.mms.run import Run
+from mpm_verify.mms.discretisation import axisymmetric
 from mpm_verify.reports.export.digits import document
 from mpm_verify.reports.sentences import digits
-from mpm_verify.solver.plugins import METHODS, TRANSFERS, label
+from mpm_verify.solver.plugins import METHODS, SOLUTIONS, TRANSFERS, create, label
 from mpm_verify.solver.plugins import canonical as canonical_name
 from mpm_verify.solver.stress_update import check_stress_update
 
@@ -26,10 +27,13 @@ def run_of(solver: str | Callable[..., Any], solution: str, material: str | None
 
         solver = register(solver)
     named = canonical({"solver": solver, "solution": solution, "material": material or ""})
-    if named["dim"] == 3:
-        raise ValueError(
-            f"{solution} has three dimensions, and the reference two; choose --solution clamped_shear:G=0.05"
+    around = axisymmetric(create(SOLUTIONS, named["solution"]))
+    if named["dim"] != 2 or around:
+        count = "one dimension" if named["dim"] == 1 else "three dimensions"
+        told = (
+            "is axisymmetric, and the reference is in plane strain" if around else f"has {count}, and the reference two"
         )
+        raise ValueError(f"{solution} {told}; choose --solution clamped_shear:G=0.05")
     run = Run(**named, **more)
     check([run])
     return run

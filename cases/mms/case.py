@@ -10,14 +10,14 @@ from typing import Any
 from mpm_verify.cases.harness.build import Asked
 from mpm_verify.cases.judging.records import Expectation
 from mpm_verify.cases.mms.expectations import JUDGED_QUANTITY, expected
-from mpm_verify.cases.mms.run import AXES, NORMS, QUANTITIES, QUICK, SOLID, Result, Run
+from mpm_verify.cases.mms.run import AXES, LINE, NORMS, QUANTITIES, QUICK, SOLID, Result, Run
 from mpm_verify.cases.mms.stability import check_time_steps
 from mpm_verify.cases.mms.variants import axes, timed_as_usual, variant
 from mpm_verify.cases.solvers import column_map
 from mpm_verify.cases.solvers.command import PYTHON, program
 from mpm_verify.cases.solvers.naming import method_of, version_of
 from mpm_verify.mms.cells import fitting, ratio
-from mpm_verify.mms.discretisation import dimension
+from mpm_verify.mms.discretisation import axisymmetric, dimension
 from mpm_verify.mms.duration import lasting
 from mpm_verify.mms.energy import check_energy
 from mpm_verify.solver.layout import per_side
@@ -28,6 +28,7 @@ from mpm_verify.solver.plugins import (
     SMOOTHINGS,
     SOLUTIONS,
     TRANSFERS,
+    available,
     create,
     is_file,
     label,
@@ -74,9 +75,8 @@ def canonical(values: dict[str, Any]) -> dict[str, Any]:
     """Specifications with only the parameters that differ from their defaults, and the solution's own material."""
     solution = in_precision(values.get("solution", Run.solution), values.get("precision", Run.precision))
     values["solution"] = solution
-    own = dimension(create(SOLUTIONS, solution))
-    if values.setdefault("dim", own) == 2 != own:
-        raise ValueError(f"{label(solution)} has three dimensions, dim = {values['dim']} cannot be; leave it out")
+    values.setdefault("dim", dimension(create(SOLUTIONS, solution)))
+    check_dimension(solution, values["dim"])
     values["material"] = canonical_name(MATERIALS, values.get("material") or create(SOLUTIONS, solution).material)
     values["transfer"] = canonical_name(TRANSFERS, values.get("transfer", Run.transfer))
     values["layout"] = canonical_name(LAYOUTS, values.get("layout", Run.layout))
@@ -95,6 +95,22 @@ def canonical(values: dict[str, Any]) -> dict[str, Any]:
     if not all(-0.5 < part < 0.5 for part in offset):
         raise ValueError(f"offset = {offset} shifts particles by fractions of their spacing: choose -0.49 to 0.49 each")
     return values
+
+
+def check_dimension(solution: str, dim: int) -> None:
+    """Raise ValueError for dimensions that a solution cannot have: it has its own, or three where it is plane."""
+    plugin = create(SOLUTIONS, solution)
+    own, around = dimension(plugin), axisymmetric(plugin)
+    if dim not in (1, 2, 3) or dim == own or (own, dim, around) == (2, 3, False):
+        return
+    what = "is axisymmetric" if around else f"has {('one', 'two', 'three')[own - 1]} dimension{'s' * (own > 1)}"
+    others = f"take {' or '.join(of_dimension(dim))}" if own == 2 and dim == 1 else "leave it out"
+    raise ValueError(f"{label(solution)} {what}, dim = {dim} cannot be; {others}")
+
+
+def of_dimension(count: int) -> list[str]:
+    """Solutions of so many dimensions."""
+    return [name for name in available(SOLUTIONS) if getattr(load(SOLUTIONS, name), "coordinates", 2) == count]
 
 
 def in_precision(solution: str, precision: str) -> str:
@@ -124,7 +140,7 @@ def check(runs: Sequence[Run]) -> None:
 
 
 def check_ours(runs: Sequence[Run]) -> None:
-    """Raise ValueError for what the reference solver does not have: three dimensions, a smoothing of the material."""
+    """Raise ValueError for what the reference solver does not have: other dimensions, a smoothing of the material."""
     inside = [run for run in runs if run.manufacture != "none"]
     if inside and not any(run.damping for run in inside):
         raise ValueError("manufacture = 'damping' has no damping to put into the problem; give --damping 0.05 too")
@@ -132,11 +148,14 @@ def check_ours(runs: Sequence[Run]) -> None:
         if smoothing != "none":
             create(SMOOTHINGS, smoothing).check(create(MATERIALS, material))
     for run in runs:
-        own = is_file(run.solution) and dimension(create(SOLUTIONS, run.solution)) == 3  # told by its check
-        if run.dim == 3 and not own:
-            what = f"--solution {label(run.solution)}" + " --dim 3" * (not run.solid)
+        plugin = create(SOLUTIONS, run.solution)
+        own = is_file(run.solution) and dimension(plugin) != 2  # told by its check
+        state = {1: "in one dimension", 3: "in three dimensions"}.get(run.dim, "axisymmetric")
+        if (run.dim != 2 or axisymmetric(plugin)) and not own:
+            what = f"--solution {label(run.solution)}" + " --dim 3" * (dimension(plugin) < run.dim)
+            has = "is in plane strain" if run.dim == 2 else "has two"
             raise ValueError(
-                f"{label(run.solution)} in three dimensions is for a solver of your own, the reference solver has two: "
+                f"{label(run.solution)} {state} is for a solver of your own, the reference solver {has}: "
                 f"verify mms --solver './mine {{case}} {{out}}' {what}"
             )
 
@@ -178,18 +197,19 @@ def parts(asked: Asked) -> list[Asked]:
     solutions = asked.values["solution"]
     if len(set(asked.values.get("start", ()))) > 1:  # a search for the one that fits
         asked = replace(asked, values={**asked.values, "order": (0.0,)})
-    solid = [one for one in solutions if dimension(create(SOLUTIONS, one)) == 3]
-    if solid:
-        flat = tuple(one for one in solutions if one not in solid)
-        rest = parts(replace(asked, values={**asked.values, "solution": flat})) if flat else []
-        return [*rest, replace(asked, values={**SOLID, **asked.values, "solution": tuple(solid)})]
+    for count, usual in ((3, SOLID), (1, LINE)):
+        others = [one for one in solutions if dimension(create(SOLUTIONS, one)) == count]
+        if others:
+            left = tuple(one for one in solutions if one not in others)
+            rest = parts(replace(asked, values={**asked.values, "solution": left})) if left else []
+            return [*rest, replace(asked, values={**usual, **asked.values, "solution": tuple(others)})]
     if any(asked.values.get("solver", ())) and not asked.quick:
         asked = replace(asked, values={**THEIRS, **asked.values})
     if "cells" in asked.values or not any(is_file(one) for one in solutions):
         return [asked]
-    usual = (QUICK if asked.quick else AXES)["cells"]
+    counts = (QUICK if asked.quick else AXES)["cells"]
     return [
-        replace(asked, values={**asked.values, "solution": (one,), "cells": fitting(create(SOLUTIONS, one), usual)})
+        replace(asked, values={**asked.values, "solution": (one,), "cells": fitting(create(SOLUTIONS, one), counts)})
         for one in solutions
     ]
 

@@ -31,7 +31,7 @@ from mpm_verify.solver.promise import Promise
 
 JUDGED_QUANTITY = ("u", "rms")
 JUDGED_PPC = (4, 9)
-SOLID_PPC = (8, 27)  # of three dimensions
+OTHER_PPC = {1: (2, 3), 3: (8, 27)}  # of one dimension and of three
 LARGE = ("swirl", "expanding_ring", "generalised_vortex")  # solutions of large deformation, with shear and rotation
 SMALL = 1e-5  # amplitude over size
 HENCKY = ("hencky", "hencky_rate")  # whose errors, and limits of rates, are recorded apart
@@ -103,7 +103,7 @@ def expected(
     the order of u that its file declares, or else the one that the method promises.
     """
     plugin: Any = create(SOLUTIONS, solution)
-    if norm != "rms" or ppc not in (JUDGED_PPC if dimension(plugin) == 2 else SOLID_PPC):
+    if norm != "rms" or ppc not in OTHER_PPC.get(dimension(plugin), JUDGED_PPC):
         return None
     if is_file(solution):
         if quantity != "u" or rates.strays(material):

@@ -36,6 +36,7 @@ QUICK: dict[str, tuple[Any, ...]] = {
     "solution": ("axis_aligned", "clamped_shear"), "cells": (8, 12, 16, 24, 32), "ppc": (4,)
 }  # fmt: skip
 SOLID = {"cells": (4, 6, 8, 12, 16), "ppc": (8,)}  # of a solution in three dimensions, whatever else
+LINE = {"cells": (16, 32, 64, 128), "ppc": (2,)}  # of one in one dimension
 
 
 def strays_on(material: Any, solution: str) -> bool:
@@ -59,7 +60,7 @@ class Run(RunRecord):
     solution: str = axis("axis_aligned", "Manufactured solution, or a file of your own.", SOLUTIONS)
     material: str = axis("", "Constitutive model; usual is the solution's own.", MATERIALS)
     cells: int = axis(8, "Cells along a side of the domain.")
-    ppc: int = axis(4, "Particles per cell, square numbers; of a solution in three dimensions cube numbers.")
+    ppc: int = axis(4, "Particles per cell, square numbers; of solutions in three dimensions cube numbers, in one any.")
     courant: float = axis(
         0.4,
         "C dt / dx, C the reference speed of the solution; with more, 0.4,0.2,0.1, the finest cells run with each, and "
@@ -107,8 +108,8 @@ class Run(RunRecord):
             raise ValueError(
                 f"cells = {self.cells} cannot be run; choose whole numbers from 2 to 4096, such as 8,16,32,64"
             )
-        if self.dim not in (2, 3):
-            raise ValueError(f"dim = {self.dim} must be 2, plane strain, or 3")
+        if self.dim not in (1, 2, 3):
+            raise ValueError(f"dim = {self.dim} must be 2, plane strain or axisymmetric, or 1, uniaxial strain, or 3")
         if self.dim == 2 and (self.ppc < 1 or isqrt(self.ppc) ** 2 != self.ppc):
             raise ValueError(f"{self.ppc} particles per cell is not a square number; choose from 1, 4, 9, 16, ...")
         if not 1e-3 <= self.courant <= 10:
@@ -212,15 +213,17 @@ class Run(RunRecord):
 
     @property
     def particles(self) -> int:
-        """Number of particles of a square or cube, or of a slice in as many layers as the root of a cell's."""
+        """Number of particles of a line, square or cube, or of a slice in as many layers as the root of a cell's."""
         if self.solid:
             return self.cells**3 * self.ppc
-        return self.cells**2 * self.ppc * (isqrt(self.ppc) if self.dim == 3 else 1)
+        return int(self.cells ** min(self.dim, 2)) * self.ppc * (isqrt(self.ppc) if self.dim == 3 else 1)
 
     @property
     def nodes(self) -> int:
-        """Number of nodes of a square or cube, or of a slice."""
-        return (self.cells + 1) ** (3 if self.solid else 2) * (2 if self.dim == 3 and not self.solid else 1)
+        """Number of nodes of a line, square or cube, or of a slice."""
+        if self.solid:
+            return (self.cells + 1) ** 3
+        return int((self.cells + 1) ** min(self.dim, 2)) * (2 if self.dim == 3 else 1)
 
     @property
     def solid(self) -> bool:
@@ -230,7 +233,8 @@ class Run(RunRecord):
 
     def __str__(self) -> str:
         name = self.solver.split()[0] if self.solver else label(self.method)
-        power, thick = "³" if self.solid else "²", ", one cell thick" if self.dim == 3 and not self.solid else ""
+        thick = ", one cell thick" if self.dim == 3 and not self.solid else ""
+        power = "³" if self.solid else "²" if self.dim > 1 else ""
         return f"{name} {self.cells}{power} cells, {self.ppc} per cell{thick}"
 
 

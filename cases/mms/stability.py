@@ -60,11 +60,11 @@ def check_time_steps(runs: Sequence[Run], courants: Sequence[float]) -> None:
 
 def fastest(solution: Any, exact: Manufactured, lag: float) -> float:
     """Largest speed of the body over the times from -lag to 0, sampled, with some slack."""
-    if dimension(solution) == 2:
+    if (d := dimension(solution)) == 2:
         X = solution.layout(width(solution) / CELLS, 4).corners.reshape(-1, 2)
         most = max(float(np.hypot(*exact.v(X, time).T).max()) for time in np.linspace(-lag, 0.0, TIMES))
     else:
-        X = solution.layout(4 * width(solution) / CELLS, 8).X
+        X = solution.layout((4 if d == 3 else 1) * width(solution) / CELLS, 2**d).X
         most = max(float(np.linalg.norm(exact.v(X, time), axis=1).max()) for time in np.linspace(-lag, 0.0, TIMES))
     return most * (1 + SLACK)
 

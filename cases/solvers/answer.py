@@ -2,7 +2,8 @@
 
 result_<step>.csv (or .tsv, .npz, .vtu) has a row a particle, in any order: `id`, or the reference position `X`, `Y`;
 `x`, `y`; and any of `vx vy`, `Fxx Fxy Fyx Fyy`, `sxx syy szz sxy`. In three dimensions there are `Z`, `z`, `vz`, nine
-components of F, and `syz sxz`. result.json says which time level a field has.
+components of F, and `syz sxz`; in one `X`, `x`, `vx`, `Fxx` and `sxx`; in axisymmetry `Fzz` too. result.json says which
+time level a field has.
 """
 
 from dataclasses import dataclass, field
@@ -24,6 +25,8 @@ from mpm_verify.solver.state import Floats
 class Frame:
     """Frame: x (P,d) and what else there is of v (P,d), F (P,d*d), sigma (P,4 or 6), X (P,d) and volume V (P,1).
 
+    In axisymmetry F is (P,5), see `around`.
+
     Rows are in the order of the case.
 
     `resolution` is the rounding of the numbers in the file by quantity, standard deviation in their units.
@@ -31,6 +34,14 @@ class Frame:
 
     fields: dict[str, Floats]
     resolution: dict[str, float] = field(default_factory=dict)
+
+
+def around(frame: Frame) -> Frame:
+    """Frame of an axisymmetric case: F has the hoop stretch as its fifth component, and is not there without it."""
+    kept = {name: values for name, values in frame.fields.items() if name not in ("F", "Fzz")}
+    if frame.fields.keys() >= {"F", "Fzz"}:
+        kept["F"] = np.hstack([frame.fields["F"], frame.fields["Fzz"]])
+    return Frame(kept, frame.resolution)
 
 
 def read(out: Path, step: int, X: Floats, spacing: float) -> Frame:

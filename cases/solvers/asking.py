@@ -6,11 +6,11 @@ A Python function is asked with arrays instead.
 import tempfile
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Protocol
 
-from mpm_verify.cases.solvers.answer import Frame, read
+from mpm_verify.cases.solvers.answer import Frame, around, read
 from mpm_verify.cases.solvers.callables import Case, called
 from mpm_verify.cases.solvers.column_map import parsed
 from mpm_verify.cases.solvers.command import PYTHON, filled
@@ -83,7 +83,10 @@ def ask(
     Answer
         Frames, or what failed.
     """
-    return in_process(run, case, force) if run.solver.startswith(PYTHON) else by_command(run, case, tick)
+    answer = in_process(run, case, force) if run.solver.startswith(PYTHON) else by_command(run, case, tick)
+    if not case.record.axisymmetric:
+        return answer
+    return replace(answer, frames={step: around(frame) for step, frame in answer.frames.items()})
 
 
 def by_command(run: Asking, case: Exported, tick: Callable[[float], None]) -> Answer:

@@ -11,7 +11,7 @@ import numpy as np
 
 from mpm_verify.cases.solvers.answer import Frame, framed
 from mpm_verify.cases.solvers.command import PYTHON
-from mpm_verify.cases.solvers.components import QUANTITIES, spread
+from mpm_verify.cases.solvers.components import NAMES, QUANTITIES, spread
 from mpm_verify.cases.solvers.levels import Levels, stated
 from mpm_verify.mms.components import AXES
 from mpm_verify.mms.export.record import CaseRecord
@@ -42,11 +42,16 @@ class Case:
     body_force: Callable[[Floats, float], Floats]
 
     def array(self, name: str, after: str = "") -> Floats:
-        """Array of a field by its letter: X, x, v (P,d), F (P,d,d), s (P,4 or 6); `after` is _half or _before."""
-        d = self.record.dimension
+        """Array of a field by its letter: X, x, v (P,d), F (P,d,d), s (P,4 or 6); `after` is _half or _before.
+
+        In one dimension s is (P,1), and in axisymmetry F is (P,5).
+        """
+        d, around = self.record.dimension, self.record.axisymmetric
         names = {**QUANTITIES[d], "s": QUANTITIES[d]["sigma"], "X": tuple(AXES[:d].upper())}[name]
+        if name == "F" and around:
+            names = NAMES[name, 5]
         values = np.stack([self.particles[f"{one}{after}"] for one in names], axis=-1)
-        return values.reshape(-1, d, d) if name == "F" else values
+        return values.reshape(-1, d, d) if name == "F" and not around else values
 
 
 def register(function: Callable[[Case], Any]) -> str:

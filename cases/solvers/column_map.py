@@ -26,7 +26,7 @@ FORMATS: dict[str, Format] = {
 NUMBERS = {"step": 1, "time": 0.5, "index": 1}  # what a name of a file may hold, with an example of each
 NUMBERED = ("pvd", "lammps")  # formats whose files say which frame is which
 KEEPS = "row"  # id of rows in the order of the particles
-NAMES = ("id", *dict.fromkeys(name for d in (2, 3) for q, parts in QUANTITIES[d].items() for name in (q, *parts)))
+NAMES = ("id", *dict.fromkeys(name for d in (2, 3, 1) for q, parts in QUANTITIES[d].items() for name in (q, *parts)))
 
 
 def lag(value: float) -> float:

@@ -1,32 +1,38 @@
-"""Components of the fields of an answer, in two dimensions and in three, by the names of their columns."""
+"""Components of the fields of an answer, in one to three dimensions, by the names of their columns."""
 
 from typing import Any
 
 import numpy as np
 
-from mpm_verify.mms.components import AXES, COMPONENTS
+from mpm_verify.mms.components import AXES, COMPONENTS, GRADIENTS, HOOP
 from mpm_verify.solver.state import Floats
 
 
 def quantities(dimension: int) -> dict[str, tuple[str, ...]]:
-    """Columns of x, v, F row by row, sigma, X and the volume."""
+    """Columns of x, v, F row by row, sigma, X and the volume; in two dimensions of zz of F too, for axisymmetry."""
     axes = AXES[:dimension]
+    around = {"Fzz": (f"F{HOOP}",)} if dimension == 2 else {}
     return {
         "x": tuple(axes),
         "v": tuple(f"v{a}" for a in axes),
-        "F": tuple(f"F{a}{b}" for a in axes for b in axes),
+        "F": tuple(f"F{end}" for end in GRADIENTS[dimension**2]),
+        **around,
         "sigma": tuple(f"s{end}" for end in COMPONENTS[dimension]),
         "X": tuple(axes.upper()),
         "V": ("V",),
     }
 
 
-QUANTITIES = {dimension: quantities(dimension) for dimension in (2, 3)}
+QUANTITIES = {dimension: quantities(dimension) for dimension in COMPONENTS}
 NAMES = {  # of an array with all components, by its name and their number
-    (name, len(parts)): parts for dimension in (2, 3) for name, parts in QUANTITIES[dimension].items()
-}
+    (name, len(parts)): parts for dimension in COMPONENTS for name, parts in QUANTITIES[dimension].items()
+} | {("F", len(ends)): tuple(f"F{end}" for end in ends) for ends in GRADIENTS.values()}
 UPPER = (0, 4, 8, 1, 5, 2)  # components of a symmetric tensor with nine, in the order of COMPONENTS
-WEIGHTS = {4: np.array([1.0, 1.0, 1.0, 2.0]), 6: np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])}  # of a sum of squares
+WEIGHTS = {
+    1: np.array([1.0]),
+    4: np.array([1.0, 1.0, 1.0, 2.0]),
+    6: np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0]),
+}  # of a sum of squares
 
 
 def reference(columns: dict[str, Floats], dimension: int) -> Floats:

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from mpm_verify.mms.components import AXES, COMPONENTS
+from mpm_verify.mms.components import AXES, COMPONENTS, GRADIENTS, STRESSES
 from mpm_verify.mms.derive import derive
-from mpm_verify.mms.discretisation import dimension, grid_box, output_steps, time_steps, width
+from mpm_verify.mms.discretisation import axisymmetric, dimension, grid_box, output_steps, time_steps, width
 from mpm_verify.mms.export.language import Heading
 from mpm_verify.mms.export.languages import LANGUAGES
 from mpm_verify.mms.export.program import Program, programs
@@ -22,6 +22,7 @@ from mpm_verify.solver.plugins import label, parameters_of
 from mpm_verify.solver.state import Floats
 
 Columns = dict[str, Floats]  # (n,) each, by name
+BODIES = {1: "bar", 2: "rectangle", 3: "box"}
 SIDES = ("left", "right", "bottom", "top", "back", "front")  # lower and upper in x, in y, in z
 
 
@@ -78,7 +79,8 @@ def export(
         Solution, or a slice of one, and constitutive model with an energy.
     cells, ppc
         Cells along the width of the body, and particles in a cell, a square number; of a body in three dimensions a
-        cube number. Of a slice it is the square number of a layer: there are as many layers as its root.
+        cube number, in one any number. Of a slice it is the square number of a layer: there are as many layers as its
+        root.
     courant
         C dt / dx, C the reference speed of the solution.
     frames
@@ -109,19 +111,21 @@ def export(
     code = programs(exact.fields)
     if start:
         code[0] = programs(start.fields(exact.fields, dt))[0]
-    heading = Heading(f"{label(names.solution)} in {label(names.material)}", d, width(solution),
-                      ", ".join(COMPONENTS[d]))  # fmt: skip
+    around = axisymmetric(solution)
+    title = f"{label(names.solution)} in {label(names.material)}{', axisymmetric: x radius, y axis, z around' * around}"
+    heading = Heading(title, d, width(solution), ", ".join(COMPONENTS[d]), GRADIENTS[5] if around else ())
     sources = {name: language.files(code, heading) for name, language in LANGUAGES.items()}
     lower, upper = grid_box(solution, dx)
     record = CaseRecord(
-        format=FORMAT, solution=label(names.solution), dimension=2 if d == 2 else 3,
-        body="ring" if hasattr(plane(solution), "inner") else "rectangle" if d == 2 else "box",
+        format=FORMAT, solution=label(names.solution), dimension=d,  # type: ignore[arg-type]
+        body="ring" if hasattr(plane(solution), "inner") else BODIES[d],  # type: ignore[arg-type]
         lower=numbers(solution.lower), upper=numbers(solution.upper),
         grid_lower=numbers(lower), grid_upper=numbers(upper), cells=cells, dx=dx, ppc=ppc * max(1, layers),
         particles=len(layout), edges=edges(solution), duration=float(solution.duration), steps=steps, dt=dt,
         courant=courant, frames=output_steps(steps, frames), t_half=-dt / 2, t_before=-dt, precision=precision,
         material=MaterialRecord(label(names.material), constants(material), getattr(material, "formula", "")),
         languages={name: tuple(files) for name, files in sources.items()}, layers=layers,
+        axisymmetric=around,
     )  # fmt: skip
     force, fields = selfcheck(code, solution, material, layout) if checked else ({}, {})
     texts = {file: text for files in sources.values() for file, text in files.items()}
@@ -161,12 +165,10 @@ def edges(solution: Any) -> dict[str, Any]:
 
 def named(letter: str, values: Floats, after: str = "") -> Columns:
     """Columns of an array (n,...) by its components: x of a vector, xx of a tensor."""
-    n, d = len(values), values.shape[1]
-    if letter == "s":
-        ends: Sequence[str] = COMPONENTS[2 if d == 4 else 3]
-    else:
-        ends = AXES[:d] if values.ndim == 2 else [a + b for a in AXES[:d] for b in AXES[:d]]
-    return dict(zip((f"{letter}{end}{after}" for end in ends), values.reshape(n, -1).T, strict=True))
+    flat = values.reshape(len(values), -1)
+    count = flat.shape[1]
+    ends: Sequence[str] = {"s": STRESSES, "F": GRADIENTS}.get(letter, {count: AXES[:count]})[count]
+    return dict(zip((f"{letter}{end}{after}" for end in ends), flat.T, strict=True))
 
 
 def particles(exact: Manufactured, layout: Layout, rho0: float, dt: float) -> Columns:

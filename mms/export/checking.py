@@ -158,7 +158,7 @@ def prepare(folder: Path, scratch: Path, language: str, dimension: int, known: T
     driver = TOOLCHAINS[language].driver
     prefix = "mms::" if language == "cpp" else "mms_"
     text = filled(f"drivers/{driver}", dimension=dimension, stress=len(COMPONENTS[dimension]), header=name,
-                  prefix=prefix)  # fmt: skip
+                  gradient=sum(one[0] == "F" for one in known.names), prefix=prefix)  # fmt: skip
     (scratch / driver).write_text(text, encoding="utf-8")
     rows = (" ".join(f"{value:.17g}" for value in row) for row in known.given)
     (scratch / ROWS).write_text("\n".join(rows) + "\n", encoding="utf-8")

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mpm_verify.mms.components import AXES, COMPONENTS
+from mpm_verify.mms.components import AXES, COMPONENTS, GRADIENTS
 from mpm_verify.solver.state import Floats
 
 
@@ -29,24 +29,26 @@ class Table:
     tolerance: Floats
 
 
-def needed(dimension: int) -> tuple[tuple[str, ...], tuple[str, ...]]:
+def needed(dimension: int, axisymmetric: bool = False) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Columns that the two tables of values must have: that of the force, and that of the fields."""
     axes = AXES[:dimension]
     force = [f"{kind}{axis}" for kind in ("b", "tolerance_b", "tolerance_at_b") for axis in axes]
-    fields = [f"{before}{name}" for name in components(dimension) for before in ("", "tolerance_")]
+    fields = [f"{before}{name}" for name in components(dimension, axisymmetric) for before in ("", "tolerance_")]
     return (*axes.upper(), "t", *axes, *force), (*axes.upper(), "t", *fields)
 
 
-def components(dimension: int) -> tuple[str, ...]:
+def components(dimension: int, axisymmetric: bool = False) -> tuple[str, ...]:
     """Names of the components of u, v, F and sigma, in the order in which a driver prints them."""
     axes = AXES[:dimension]
-    F = [f"F{a}{b}" for a in axes for b in axes]
+    F = [f"F{end}" for end in GRADIENTS[5 if axisymmetric else dimension**2]]
     return (*(f"{kind}{axis}" for kind in "uv" for axis in axes), *F, *(f"s{end}" for end in COMPONENTS[dimension]))
 
 
-def table(dimension: int, force: Mapping[str, Floats], fields: Mapping[str, Floats]) -> Table:
+def table(
+    dimension: int, force: Mapping[str, Floats], fields: Mapping[str, Floats], axisymmetric: bool = False
+) -> Table:
     """Table of two tables of values. Raises ValueError where they are not of the same rows."""
-    axes, fielded = AXES[:dimension], components(dimension)
+    axes, fielded = AXES[:dimension], components(dimension, axisymmetric)
     at = [*axes.upper(), "t"]
     if any(len(force[name]) != len(fields[name]) or (force[name] != fields[name]).any() for name in at):
         raise ValueError("the two tables of values are not of the same rows; export the case again")

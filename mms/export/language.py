@@ -28,17 +28,23 @@ def filled(name: str, **values: object) -> str:
 
 @dataclass(frozen=True)
 class Heading:
-    """Values that every file of a case has: title, dimension, extent of the body, components of a stress."""
+    """Values that every file of a case has: title, dimension, extent of the body, components of a stress.
+
+    `listed` are the components of a deformation gradient where they are no square matrix, row by row.
+    """
 
     title: str
     dimension: int
     width: float
     stress: str
+    listed: tuple[str, ...] = ()
 
     def values(self) -> dict[str, object]:
         """Values by their names in templates."""
+        named, shape = f"as {', '.join(self.listed)}", f"{len(self.listed)}), {', '.join(self.listed)}"
         return {"title": self.title, "dimension": self.dimension, "width": repr(self.width),
-                "stress_components": self.stress}  # fmt: skip
+                "stress_components": self.stress, "gradient": named if self.listed else "row by row",
+                "gradient_shape": shape if self.listed else f"{self.dimension}, {self.dimension})"}  # fmt: skip
 
 
 class Language:

@@ -103,7 +103,7 @@ class Julia(Language):
     def given(self, program: Program) -> list[str]:
         """Statements that return the results as a tuple."""
         names = ", ".join(f"r{k + 1}" for k in range(len(program.results)))
-        return [*super().given(program), f"return ({names})"]
+        return [*super().given(program), f"return ({names}{',' * (len(program.results) == 1)})"]
 
 
 class Octave(Language):

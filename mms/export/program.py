@@ -54,12 +54,12 @@ def programs(fields: Fields) -> list[Program]:
         body_force, displacement, velocity, deformation, stress, newton_step.
     """
     d, here = len(fields.X), {"position": tuple(fields.X)}
-    stress = (len(fields.sigma),)
+    stress, gradient = (len(fields.sigma),), (d, d) if len(fields.F) == d * d else (len(fields.F),)
     made = [
         program("body_force", here, fields, fields.b, (d,)),
         program("displacement", here, fields, fields.u, (d,)),
         program("velocity", here, fields, fields.v, (d,)),
-        program("deformation", here, fields, fields.F, (d, d)),
+        program("deformation", here, fields, fields.F, gradient),
         program("stress", here, fields, fields.sigma, stress),
     ]
     goal = sp.symbols(f"goal0:{d}", real=True)

@@ -38,7 +38,7 @@ class CaseRecord:
     solution, material
         Manufactured solution and constitutive model.
     dimension
-        2, plane strain; 3.
+        1, uniaxial strain; 2, plane strain or axisymmetric; 3.
     body
         Shape of the body; a ring in three dimensions is one cell thick.
     lower, upper
@@ -65,12 +65,14 @@ class CaseRecord:
     layers
         Layers of particles in z of a plane-strain solution that is one cell thick in three dimensions; otherwise it is
         not there.
+    axisymmetric
+        Whether x is the radius and y the axis, and volumes and masses are per radian; otherwise it is not there.
     """
 
     format: Literal["mpm-verify-case-1"]
     solution: str
-    dimension: Literal[2, 3]
-    body: Literal["rectangle", "ring", "box"]
+    dimension: Literal[1, 2, 3]
+    body: Literal["rectangle", "ring", "box", "bar"]
     lower: tuple[float, ...]
     upper: tuple[float, ...]
     grid_lower: tuple[float, ...]
@@ -91,11 +93,12 @@ class CaseRecord:
     languages: dict[str, tuple[str, ...]]
     precision: Precision = "double"
     layers: int = 0
+    axisymmetric: bool = False
 
 
 def content(record: CaseRecord) -> dict[str, Any]:
-    """Record as case.json has it: without layers where there is no slice."""
-    return {name: value for name, value in asdict(record).items() if name != "layers" or value}
+    """Record as case.json has it: without layers where there is no slice, or axisymmetry where there is none."""
+    return {name: value for name, value in asdict(record).items() if name not in ("layers", "axisymmetric") or value}
 
 
 def flat(record: CaseRecord) -> list[tuple[str, str]]:

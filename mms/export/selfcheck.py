@@ -123,7 +123,8 @@ def at_position(force: Checked, exact: Fields, X: Floats, times: Floats, width: 
     tolerance = force.tolerance.copy()
     for row, (at, t) in enumerate(zip(X, times, strict=True)):
         slope = np.abs(np.stack([difference(b, at, t, e) for e in h * np.eye(len(at))], axis=-1)) / h
-        stretch = np.abs(np.linalg.inv(np.array(F(*at, t), dtype=float).reshape(len(at), -1)))
+        plane = np.array(F(*at, t), dtype=float)[: len(at) ** 2]  # in axisymmetry that of the two coordinates
+        stretch = np.abs(np.linalg.inv(plane.reshape(len(at), -1)))
         tolerance[row] += slope @ (CLOSE * UNIT * width * (1 + stretch.sum(axis=1)))
     return Checked(force.values, tolerance)
 

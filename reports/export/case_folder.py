@@ -13,6 +13,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from pydantic import TypeAdapter, ValidationError
 
 from mpm_verify.cases.harness.store import Store
+from mpm_verify.mms.components import AXES
 from mpm_verify.mms.export.case import Exported
 from mpm_verify.mms.export.expected import Table, needed, table
 from mpm_verify.mms.export.files import CASE, FIELDS, FORCE, files
@@ -83,7 +84,18 @@ def words(record: CaseRecord) -> str:
     """Text of README.md."""
     environment = Environment(loader=FileSystemLoader(TEMPLATES), undefined=StrictUndefined, keep_trailing_newline=True)
     environment.trim_blocks = environment.lstrip_blocks = True
-    return environment.get_template("case_folder.md.j2").render(case=record)
+    axes = AXES[: record.dimension]
+    sides = ("r1x the", "r1x, r1y and r2x, r2y the two", "r1x, r1y, r1z to r3z the three")[record.dimension - 1]
+
+    def named(letter: str, after: str) -> str:
+        return ", ".join(f"{letter}{axis}{after}" for axis in axes)
+
+    def said(letters: str) -> str:
+        return " and ".join(filter(None, [", ".join(letters[:-1]), letters[-1]]))
+
+    return environment.get_template("case_folder.md.j2").render(
+        case=record, axes=axes, columns=named, said=said, sides=sides
+    )
 
 
 def read(folder: Path) -> CaseRecord:
@@ -106,10 +118,10 @@ def table_of(folder: Path, record: CaseRecord) -> Table:
     """Rows and right values that the sources of a folder are checked with. Raises ValueError with one line."""
     force, fields = (
         columns(folder / name, needed_columns)
-        for name, needed_columns in zip((FORCE, FIELDS), needed(record.dimension), strict=True)
+        for name, needed_columns in zip((FORCE, FIELDS), needed(record.dimension, record.axisymmetric), strict=True)
     )
     try:
-        return table(record.dimension, force, fields)
+        return table(record.dimension, force, fields, record.axisymmetric)
     except ValueError as error:
         raise ValueError(f"{folder}: {error}") from None
 

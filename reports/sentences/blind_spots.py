@@ -8,6 +8,8 @@ from mpm_verify.mms.blind_spots import (
     OPEN,
     ROUND,
     SEEN_BY,
+    SEEN_BY_AXISYMMETRIC,
+    SEEN_BY_LINE,
     SEEN_BY_SOLID,
     SIDES,
     SMALL,
@@ -25,13 +27,33 @@ def sentence(spot: BlindSpot) -> str:
     """Sentence on a blind spot or on what is seen; of a blind spot, with the solutions of the library that see it."""
     if not spot.blind:
         return SEEN[spot.code](spot.numbers)
-    seers = (SEEN_BY_SOLID if solid(spot.numbers) else SEEN_BY).get(spot.code, ())
+    seers = seen_by(spot.numbers).get(spot.code, ())
     return unseen(spot) + (f" Seen by {', '.join(seers)}." if seers else "")
+
+
+def seen_by(n: Numbers) -> dict[BlindSpotCode, tuple[str, ...]]:
+    """Solutions of the library that see what others of the same dimensions are blind to."""
+    if n.get("axisymmetric"):
+        return SEEN_BY_AXISYMMETRIC
+    return {1.0: SEEN_BY_LINE, 3.0: SEEN_BY_SOLID}.get(n.get("dimension", 2.0), SEEN_BY)
 
 
 def solid(n: Numbers) -> bool:
     """Whether the solution has three dimensions."""
     return n.get("dimension") == 3
+
+
+def line(n: Numbers) -> bool:
+    """Whether the solution has one dimension."""
+    return n.get("dimension") == 1
+
+
+def hoop(n: Numbers) -> str:
+    """Phrase on the sizes of what goes around the axis."""
+    return (
+        f"The hoop stress over the radius reaches {percent(n['hoop_stress'])} of the force, all terms over the radius "
+        f"{percent(n['hoop_terms'])}, and the hoop strain {percent(n['hoop_strain'])} of the largest"
+    )
 
 
 def unseen(spot: BlindSpot) -> str:
@@ -141,6 +163,8 @@ def moving_edges(n: Numbers) -> str:
 
 def no_plane(n: Numbers) -> str:
     """Sentence on the component that is missing."""
+    if line(n):
+        return "One dimension: shear, rotation, lateral stresses and all that other directions do are not there."
     still = "one component of u" if n["weaker_component"] <= FAINT else "one component of the gradient"
     if solid(n):
         return f"Not all three dimensions take part: {still} is all but zero, so part of the code is not tested."
@@ -191,7 +215,8 @@ BLIND: dict[BlindSpotCode, Words] = {
     ),
     BlindSpotCode.CROSSING: lambda n: (
         f"At {n['finest']:g} cells the largest displacement is {figure(n['finest'] * n['displacement'])} cells, so of "
-        f"{8 if solid(n) else 4} particles in a cell none crosses into another: what crossing does is invisible."
+        f"{8 if solid(n) else 2 if line(n) else 4} particles in a cell none crosses into another: what crossing does "
+        "is invisible."
     ),
     BlindSpotCode.WALLS: no_walls,
     BlindSpotCode.LOAD: lambda n: (
@@ -203,6 +228,7 @@ BLIND: dict[BlindSpotCode, Words] = {
         "load alone moves the body, so wrong internal forces hardly show."
     ),
     BlindSpotCode.PLANE: no_plane,
+    BlindSpotCode.HOOP: lambda n: f"{hoop(n)}: a hoop term that is missing is hard to see.",
     BlindSpotCode.MODEL: lambda n: (
         f"The constitutive model is one of small strains, and components of F {MINUS} I reach {figure(n['strain'])}: "
         "its stress is that of its energy to first order alone, so the error ends on a floor that no cells remove."
@@ -243,7 +269,9 @@ SEEN: dict[BlindSpotCode, Words] = {
         f"({figure(n['finest'] * n['displacement'])} at {n['finest']:g}), so particles cross cells."
     ),
     BlindSpotCode.WALLS: lambda n: (
-        "Particles slide along walls that they press on; walls that hold them and free edges take no part."
+        "The ends press on what holds them, so a wall takes part; free ends take none."
+        if line(n)
+        else "Particles slide along walls that they press on; walls that hold them and free edges take no part."
     ),
     BlindSpotCode.EDGES: moving_edges,
     BlindSpotCode.LOAD: lambda n: (
@@ -258,4 +286,5 @@ SEEN: dict[BlindSpotCode, Words] = {
         if solid(n)
         else "Both components move, and both x and y have gradients."
     ),
+    BlindSpotCode.HOOP: lambda n: f"{hoop(n)}, so a hoop term that is missing shows.",
 }  # fmt: skip

@@ -8,9 +8,12 @@ import typer
 from mpm_verify.verify.terminal.output import printing
 
 FOLDER = Path(__file__).absolute().parents[2] / "cases" / "mms" / "external" / "examples"
+FIRST = {"python1d": "bump1d", "python-rz": "bump_rz", "python3d": "bump3d"}  # of other dimensions than two
 LANGUAGES = {  # what is typed beside --solver, and what it needs
     "python": "python {here}/solver.py {{case}} {{out}}",
     "numpy-class": "python {here}/adapter.py {{case}} {{out}}",
+    "python1d": "python {here}/solver.py {{case}} {{out}}",
+    "python-rz": "python {here}/solver.py {{case}} {{out}}",
     "python3d": "python {here}/solver.py {{case}} {{out}}",
     "cpp": "{here}/run.sh {{case}} {{out}}",
     "fortran": "{here}/run.sh {{case}} {{out}}",
@@ -48,7 +51,7 @@ def example(
     with printing():
         typer.echo(f"{to}: {', '.join(sorted(file.name for file in to.iterdir()))}")
         command = LANGUAGES[language].format(here=here)
-        first = "bump3d" if language.endswith("3d") else "clamped_shear:G=1e-6"
+        first = FIRST.get(language, "clamped_shear:G=1e-6")
         typer.echo(f"judge it with: verify mms --quick --solver '{command}' --as mpm --solution {first}")
 
 

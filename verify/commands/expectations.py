@@ -33,15 +33,18 @@ def expectations(
 
     with usage():
         from mpm_verify.cases.mms.expectations import registry
-        from mpm_verify.mms.discretisation import dimension
+        from mpm_verify.mms.discretisation import axisymmetric, dimension
         from mpm_verify.solver.plugins import available, create
 
         entries = [e for e in registry() if solution in (None, e.solution) and method in (None, e.method)]
-        if not entries and solution in available(SOLUTIONS) and dimension(create(SOLUTIONS, solution)) == 3:
-            raise ValueError(
-                f"{solution} has three dimensions, and nothing of its own is registered; at a small amplitude --as "
-                "takes what --solution 'small amplitude' shows; otherwise give --order"
-            )
+        if not entries and solution in available(SOLUTIONS):
+            plugin = create(SOLUTIONS, solution)
+            has = {1: "one dimension", 3: "three dimensions"}.get(dimension(plugin))
+            if has or axisymmetric(plugin):
+                raise ValueError(
+                    f"{solution} {f'has {has}' if has else 'is axisymmetric'}, and nothing of its own is registered; "
+                    "at a small amplitude --as takes what --solution 'small amplitude' shows; otherwise give --order"
+                )
         if not entries:
             solutions, methods = sorted({e.solution for e in registry()}), sorted({e.method for e in registry()})
             choice = f"choose from {', '.join(solutions)} and from {', '.join(methods)}"

@@ -30,8 +30,8 @@ def export(
     ppc: Annotated[
         int | None,
         typer.Option(
-            help="Particles per cell, a square number; of a solution in three dimensions a cube number.",
-            show_default="4, or 8",
+            help="Particles per cell, a square number; of a solution in three dimensions a cube number, in one any.",
+            show_default="4, 8 or 2",
         ),
     ] = None,
     material: Annotated[
@@ -54,7 +54,8 @@ def export(
     dim: Annotated[
         int | None,
         typer.Option(
-            help="Dimensions: with 3 a plane-strain solution is one cell thick.", show_default="the solution's own"
+            help="Dimensions, 1 to 3: with 3 a plane-strain solution is one cell thick.",
+            show_default="the solution's own",
         ),
     ] = None,
 ) -> None:
@@ -85,7 +86,7 @@ def made(
 ) -> "Exported":
     """Content of a case, after the checks that a run of it has to pass. Raises ValueError."""
     from mpm_verify.cases.mms.case import canonical, check_solutions
-    from mpm_verify.cases.mms.run import SOLID, Run
+    from mpm_verify.cases.mms.run import LINE, SOLID, Run
     from mpm_verify.mms.discretisation import dimension
     from mpm_verify.mms.export.case import Names, export
     from mpm_verify.mms.export.slice import sliced
@@ -94,7 +95,7 @@ def made(
     asked = {"dim": dim} if dim is not None else {}
     values = canonical({"solution": solution, "material": material or "", "precision": precision, **asked})
     plugin = create(SOLUTIONS, values["solution"])
-    usual = Run.ppc if dimension(plugin) == 2 else SOLID["ppc"][0]
+    usual = {1: LINE["ppc"][0], 2: Run.ppc, 3: SOLID["ppc"][0]}[dimension(plugin)]
     run = Run(**values, cells=cells, ppc=usual if ppc is None else ppc, courant=courant)
     if run.particles > MOST_PARTICLES:
         raise ValueError(f"{run.particles} particles are too many for a table; choose fewer cells or --ppc")

@@ -86,7 +86,7 @@ def of_stress(e: Evidence, wrong: bool = False) -> dict[str, float]:
         return {}
     slope = inner(given, meant) / size**2
     if norm(given - slope * meant) < BETTER * whole and abs(slope - 1) > CLOSE:
-        best = mean_factor(given, meant)
+        best = None if e.around else mean_factor(given, meant)
         if best and best[1] < BETTER * norm(given - slope * meant):
             return named(e, best[0])
         return {"sigma_sign" if abs(slope + 1) < (CLOSE if e.has("F") else ROUGH) else "sigma_factor": slope}
@@ -96,7 +96,7 @@ def of_stress(e: Evidence, wrong: bool = False) -> dict[str, float]:
     lag = -inner(gap, late) / inner(late, late)
     if norm(gap + lag * late) < BETTER * whole and abs(lag) > LATE:
         return {"sigma_lag": lag}
-    best = mean_factor(given, meant)
+    best = None if e.around else mean_factor(given, meant)
     return named(e, best[0]) if best and best[1] < BETTER * whole else {}
 
 

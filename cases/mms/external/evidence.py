@@ -11,18 +11,20 @@ from scipy.spatial import cKDTree
 from mpm_verify.cases.solvers.answer import Frame
 from mpm_verify.cases.solvers.components import reference
 from mpm_verify.cases.solvers.levels import Levels
-from mpm_verify.mms.components import AXES, COMPONENTS
+from mpm_verify.mms.components import AXES, COMPONENTS, square
 from mpm_verify.mms.export.case import Exported
 from mpm_verify.mms.manufacture import Manufactured
 from mpm_verify.solver.state import Floats
 
-SUPPORT = {2: 12, 3: 32}  # particles that a gradient is fitted to, six coefficients each, or ten in three dimensions
+SUPPORT = {1: 5, 2: 12, 3: 32}  # particles that a gradient is fitted to, with 3, 6 and 10 coefficients
 STEP = 1e-30  # of a complex step
 
 
 @dataclass(frozen=True)
 class Evidence:
     """Answer beside its case. K output times, the start of the run before them, P particles.
+
+    In axisymmetry tensors are of the radius, the axis and around it, (3,3).
 
     Parameters
     ----------
@@ -50,6 +52,11 @@ class Evidence:
     def d(self) -> int:
         """Number of dimensions."""
         return self.case.record.dimension
+
+    @property
+    def around(self) -> bool:
+        """Whether it is axisymmetric."""
+        return self.case.record.axisymmetric
 
     @property
     def V0(self) -> Floats:
@@ -92,7 +99,7 @@ class Evidence:
     @cached_property
     def F_exact(self) -> Floats:
         """Exact deformation gradients (1+K,P,d,d)."""
-        return np.stack([self.exact.F(self.X, t) for t in self.times])
+        return square(np.stack([self.exact.F(self.X, t).reshape(len(self.X), -1) for t in self.times]))
 
     @cached_property
     def F_own(self) -> Floats:
@@ -100,13 +107,23 @@ class Evidence:
 
         What the same operator misses of the exact displacements is taken off.
         """
-        missed = np.eye(self.d) + self.gradient(self.u_exact) - self.F_exact
-        return np.eye(self.d) + self.gradient(self.u) - missed
+        unit = np.eye(self.F_exact.shape[-1])
+        missed = unit + self.stretch(self.u_exact) - self.F_exact
+        return unit + self.stretch(self.u) - missed
+
+    def stretch(self, u: Floats) -> Floats:
+        """F - I (...,P,d,d) of displacements (...,P,d); in axisymmetry with u over the radius around the axis."""
+        plane = self.gradient(u)
+        if not self.around:
+            return plane
+        found = np.zeros((*u.shape[:-1], 3, 3))
+        found[..., :2, :2], found[..., 2, 2] = plane, u[..., 0] / self.X[:, 0]
+        return found
 
     @cached_property
     def F_given(self) -> Floats:
         """Deformation gradients (1+K,P,d,d) as they were written; that of the start is the exact one."""
-        return np.concatenate([self.F_exact[:1], self.given("F").reshape(-1, len(self.X), self.d, self.d)])
+        return np.concatenate([self.F_exact[:1], square(self.given("F"))])
 
     @cached_property
     def operators(self) -> tuple[Any, ...]:
@@ -137,20 +154,20 @@ class Evidence:
     def stressed(self) -> bool:
         """Whether the material's energy can be derived by complex numbers; one of a user's file may not take them."""
         try:
-            return bool(np.isfinite(self.piola(np.eye(self.d)[None])).all())
+            return bool(np.isfinite(self.piola(np.eye(self.F_exact.shape[-1])[None])).all())
         except Exception:  # of a user's code
             return False
 
     def piola(self, F: Floats) -> Floats:
-        """First Piola stress (...,d,d) that the material has under F (...,d,d), of two dimensions in plane strain."""
+        """First Piola stress (...,d,d) that the material has under F (...,d,d), where all else of F is that of I."""
         return derivative(self.exact.material, F)[0]
 
     def sigma(self, F: Floats) -> Floats:
-        """Cauchy stress (...,4 or 6) that the material has under F (...,d,d), in the order of mms/components.py."""
+        """Cauchy stress (...,1, 4 or 6) that the material has under F (...,d,d), in the order of mms/components.py."""
         P, Pzz = derivative(self.exact.material, F)
         J = np.linalg.det(F)[..., None]
         s = P @ F.swapaxes(-1, -2)
-        parts = [Pzz if part == "zz" and self.d == 2 else s[..., AXES.index(part[0]), AXES.index(part[1])]
+        parts = [Pzz if part == "zz" and F.shape[-1] == 2 else s[..., AXES.index(part[0]), AXES.index(part[1])]
                  for part in COMPONENTS[self.d]]  # fmt: skip
         found: Floats = np.stack(parts, axis=-1) / J
         return found

@@ -74,10 +74,10 @@ def explained(e: Evidence) -> dict[str, float]:
 def by_time(e: Evidence) -> dict[str, float]:
     """Another time of the positions, or a force, stress or start that the momentum balance names.
 
-    The one that leaves less. The balance is taken of rectangles.
+    The one that leaves less. The balance is taken of rectangles in plane strain.
     """
     found, left = motion.other_times(e)
-    if e.case.record.body != "rectangle" or len(e.frames) < FEW or not e.stressed:
+    if e.case.record.body != "rectangle" or e.around or len(e.frames) < FEW or not e.stressed:
         return found
     balance = Balance(e)
     tried = balance.tried()
