@@ -14,7 +14,6 @@ HOOP = "    inner[:, :, 0] += N * (V * around / x[:, 0])[:, None]  # the hoop st
 FAULTS = {  # what is replaced, and by what
     "": ("", ""),
     "hoop stress missing": (HOOP, ""),
-    "hoop stress of the other sign": ("inner[:, :, 0] += N", "inner[:, :, 0] -= N"),
     "hoop strain missing": ("hoop + dt * mean[:, 0] / x[:, 0] * hoop", "hoop"),
     "areas for volumes": ("V = V0 * np.linalg.det(F) * hoop", "V = V0 / X[:, 0] * np.linalg.det(F)"),
 }  # fmt: skip
@@ -71,8 +70,9 @@ def test_digits_and_order(verify: Call, language: str, solution: str) -> None:
 
 @pytest.mark.parametrize(
     ("fault", "solution"),
-    [*((name, "bump_rz") for name in FAULTS if name), ("hoop stress missing", "cylinder_rz:A=1e-6,B=1e-6")],
-)
+    [("hoop strain missing", "bump_rz"), ("areas for volumes", "bump_rz"),
+     ("hoop stress missing", "cylinder_rz:A=1e-6,B=1e-6")],
+)  # fmt: skip
 def test_a_fault_around_the_axis_has_no_order(verify: Call, fault: str, solution: str) -> None:
     """The error stays where it is on finer cells, more than twice that of the sound toy: it does not pass."""
     code, errors = judged(verify, "python-rz", solution, fault)
@@ -81,7 +81,7 @@ def test_a_fault_around_the_axis_has_no_order(verify: Call, fault: str, solution
     assert code != 0
 
 
-def test_on_four_grids_a_missing_hoop_stress_fails(verify: Call) -> None:
-    code, errors = judged(verify, "python-rz", "bump_rz", "hoop stress missing", cells="8,12,16,24")
-    assert last_order(errors, "16,24") < 0.5
+def test_on_five_grids_a_missing_hoop_stress_fails(verify: Call) -> None:
+    code, errors = judged(verify, "python-rz", "bump_rz", "hoop stress missing", cells="8,12,16,24,32")
+    assert abs(last_order(errors, "24,32")) < 0.1
     assert code == 1

@@ -1,18 +1,21 @@
 """Known answers of what the numbers rest on: norms against plain NumPy, exact fields against differences of them."""
 
+from typing import Any
+
 import numpy as np
 
 from mpm_verify.cases.judging.records import Outcome
 from mpm_verify.cases.mms.exact import manufactured
 from mpm_verify.cases.mms.norms import Norms, compare, new_sums
 from mpm_verify.cases.mms.run import QUANTITIES
-from mpm_verify.mms.discretisation import time_steps
-from mpm_verify.mms.manufacture import Manufactured
+from mpm_verify.mms.components import COMPONENTS, square
+from mpm_verify.mms.discretisation import axisymmetric, time_steps
+from mpm_verify.mms.manufacture import Field, Manufactured
 from mpm_verify.solver.plugins import SOLUTIONS, create
 from mpm_verify.solver.state import Floats, Particles
 
 Answer = tuple[str, str]
-FLAT = ("axis_aligned", "clamped_shear", "swirl", "generalised_vortex")
+DERIVED = ("axis_aligned", "clamped_shear", "swirl", "generalised_vortex", "bar1d", "cylinder_rz")
 STEP, CLOSE = 2e-4, 1e-5  # of differences, and of what they find
 
 
@@ -28,9 +31,9 @@ def distance(found: Floats, expected: Floats) -> float:
 
 
 def derivation() -> Answer:
-    """Velocity, F, P, sigma and body force of solutions, by differences of the displacement and of the energy."""
+    """Velocity, F, P, sigma, body force and volumes of solutions, by differences of displacement and energy."""
     found: dict[str, float] = {}
-    for name in FLAT:
+    for name in DERIVED:
         solution = create(SOLUTIONS, name)
         exact = manufactured(name, solution.material)
         found |= {f"{name}: {key}": value for key, value in residuals(exact, solution)}
@@ -39,31 +42,57 @@ def derivation() -> Answer:
     return first_wrong(found, CLOSE)
 
 
-def residuals(exact: Manufactured, solution: object) -> list[tuple[str, float]]:
+def residuals(exact: Manufactured, solution: Any) -> list[tuple[str, float]]:
     """Distances of each exact field from what it must be."""
-    lower, upper = np.asarray(solution.lower), np.asarray(solution.upper)  # type: ignore[attr-defined]
-    X = lower + (upper - lower) * np.random.default_rng(7).uniform(0.1, 0.9, (9, 2))
+    lower, upper = np.asarray(solution.lower), np.asarray(solution.upper)
+    d, around = len(lower), axisymmetric(solution)
+    X = lower + (upper - lower) * np.random.default_rng(7).uniform(0.1, 0.9, (9, d))
     if hasattr(solution, "inner"):  # a ring
         X = X[:3]
-    t, h = 0.31 * float(solution.duration), STEP * float((upper - lower).max())  # type: ignore[attr-defined]
-    k = STEP * float(solution.duration)  # type: ignore[attr-defined]
-    F = np.stack([by_axis(lambda Y: exact.u(Y, t), X, a, h) for a in range(2)], axis=2) + np.eye(2)
+    t, h = 0.31 * float(solution.duration), STEP * float((upper - lower).max())
+    k = STEP * float(solution.duration)
+    F = np.tile(np.eye(3), (len(X), 1, 1))
+    F[:, :d, :d] += np.stack([by_axis(lambda Y: exact.u(Y, t), X, a, h) for a in range(d)], axis=2)
+    F[:, 2, 2] += exact.u(X, t)[:, 0] / X[:, 0] if around else 0.0
     P = np.array([piola(exact, f) for f in F])
-    full = np.zeros((len(F), 3, 3))
-    full[:, :2, :2], full[:, 2, 2] = F, 1.0
-    J = np.linalg.det(full)
-    sigma = P @ full.transpose(0, 2, 1) / J[:, None, None]
-    flat = np.stack([sigma[:, 0, 0], sigma[:, 1, 1], sigma[:, 2, 2], sigma[:, 0, 1]], axis=1)
-    divergence = by_axis(lambda Y: exact.P(Y, t)[:, :, 0], X, 0, h) + by_axis(lambda Y: exact.P(Y, t)[:, :, 1], X, 1, h)
+    sigma = P @ F.transpose(0, 2, 1) / np.linalg.det(F)[:, None, None]
+    flat = np.stack([sigma[:, "xyz".index(i), "xyz".index(j)] for i, j in COMPONENTS[d]], axis=1)
     acceleration = central(lambda s: exact.v(X, s), t, k)
-    b = acceleration - divergence / exact.rho0
-    return [
+    b, shown = acceleration - divergence(exact, X, t, h, around) / exact.rho0, slice(3 if around else d)
+    found = [
         ("v", distance(exact.v(X, t), central(lambda s: exact.u(X, s), t, k))),
-        ("F", distance(exact.F(X, t), F)),
-        ("P", distance(exact.P(X, t), P[:, :2, :2])),
+        ("F", distance(tensor(exact.F, X, t), F[:, shown, shown])),
+        ("P", distance(tensor(exact.P, X, t), P[:, shown, shown])),
         ("sigma", distance(exact.sigma(X, t), flat)),
         ("b", distance(exact.b(X, t), b)),
     ]
+    return [*found, ("volume", volume(solution))] if around else found
+
+
+def tensor(field: Field, X: Floats, t: float) -> Floats:
+    """Tensors of a field at X as square matrices."""
+    return square(field(X, t).reshape(len(X), -1))
+
+
+def divergence(exact: Manufactured, X: Floats, t: float, h: float, around: bool) -> Floats:
+    """Div P (P,d) by differences; around an axis Div (X P), less the hoop stress, over X."""
+    d = X.shape[1]
+
+    def column(Y: Floats, axis: int) -> Floats:
+        return tensor(exact.P, Y, t)[:, :d, axis] * (Y[:, :1] if around else 1.0)
+
+    found: Floats = sum(by_axis(lambda Y, a=a: column(Y, a), X, a, h) for a in range(d))
+    if around:
+        found[:, 0] -= tensor(exact.P, X, t)[:, 2, 2]
+        found /= X[:, :1]
+    return found
+
+
+def volume(solution: Any) -> float:
+    """Relative distance of 2 pi times the volumes per radian from that of the body, which has a rectangle's section."""
+    (inner, below), (outer, above) = solution.lower, solution.upper
+    whole = np.pi * (outer**2 - inner**2) * (above - below)
+    return abs(2 * np.pi * float(solution.layout((outer - inner) / 4, 4).V0.sum()) / whole - 1)
 
 
 def central(f, t: float, step: float):  # type: ignore[no-untyped-def]
@@ -78,9 +107,8 @@ def by_axis(f, X: Floats, axis: int, step: float):  # type: ignore[no-untyped-de
 
 
 def piola(exact: Manufactured, F: Floats) -> Floats:
-    """First Piola stress (3,3) of F (2,2), by complex steps in the energy."""
-    whole = np.eye(3, dtype=complex)
-    whole[:2, :2] = F
+    """First Piola stress (3,3) of F (3,3), by complex steps in the energy."""
+    whole = F.astype(complex)
     P = np.zeros((3, 3))
     for i in range(3):
         for j in range(3):
