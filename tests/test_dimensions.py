@@ -27,6 +27,7 @@ from mpm_verify.mms.export.files import files
 from mpm_verify.mms.export.selfcheck import precisely
 from mpm_verify.mms.manufacture import Manufactured, manufacture
 from mpm_verify.reports.export.case_folder import read, table_of
+from mpm_verify.reports.sentences import commands
 from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS, create, load
 from mpm_verify.solver.state import Floats
 
@@ -469,6 +470,12 @@ def test_a_python_function_is_judged(text: str, cells: list[int], tmp_path: Path
     for quantity in ("u", "v", "F", "sigma"):
         values = errors[errors["quantity"] == quantity].sort_values("cells")["rms"].to_numpy()
         assert np.log2(values[-2] / values[-1]) == pytest.approx(2, abs=0.1), quantity
+
+
+def test_a_body_without_walls_has_the_same_dimensions() -> None:
+    assert [commands.FREE[commands.kind(one)] for one in ("swirl", "bar1d:n=2", "cylinder_rz", "swirl3d")] == [
+        "bump", "bump1d", "bump_rz", "bump3d"
+    ]  # fmt: skip
 
 
 # ---- what is refused

@@ -10,6 +10,7 @@ from typing import Any
 from mpm_verify.cases.harness.study import QuantityPlan, Study, head
 from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.cases.judging.records import Action, Outcome, ReasonCode, Wanted
+from mpm_verify.mms.discretisation import axisymmetric, dimension
 from mpm_verify.reports.sentences import any_code, own_solver, verdicts
 from mpm_verify.solver.failure import FailureKind
 from mpm_verify.solver.plugins import SOLUTIONS, create, is_file, split
@@ -63,7 +64,7 @@ def hinted(found: Finding) -> set[str]:
     return own_solver.causes(found.results) if getattr(found.plan.run, "solver", "") else set()
 
 
-FREE = "bump"  # solution without walls
+FREE = {"plane": "bump", "line": "bump1d", "around": "bump_rz", "space": "bump3d"}  # solutions without walls
 LOW = 1.8  # order below which time levels may be to blame
 
 
@@ -88,8 +89,18 @@ def walls(study: Study[Any], found: Sequence[Finding], folder: Path) -> str:
         or any(run.start or run.dim == 3 for run in study.runs)
     ):
         return ""
-    words = replaced(shlex.split(study.command), "--solution", FREE)
-    return shlex.join([*words, "--out", f"{os.path.relpath(folder)}-{FREE}"])
+    kinds = {kind(one) for one in solutions}
+    if len(kinds) > 1:
+        return ""
+    free = FREE[kinds.pop()]
+    words = replaced(shlex.split(study.command), "--solution", free)
+    return shlex.join([*words, "--out", f"{os.path.relpath(folder)}-{free}"])
+
+
+def kind(solution: str) -> str:
+    """Key of FREE of a solution: its dimensions, and whether they are around an axis."""
+    plugin = create(SOLUTIONS, solution)
+    return "around" if axisymmetric(plugin) else {1: "line", 2: "plane"}.get(dimension(plugin), "space")
 
 
 def has_walls(solution: str) -> bool:

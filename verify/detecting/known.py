@@ -8,7 +8,7 @@ from mpm_verify.cases.judging.records import Outcome
 from mpm_verify.cases.mms.exact import manufactured
 from mpm_verify.cases.mms.norms import Norms, compare, new_sums
 from mpm_verify.cases.mms.run import QUANTITIES
-from mpm_verify.mms.components import COMPONENTS, square
+from mpm_verify.mms.components import AXES, COMPONENTS, square
 from mpm_verify.mms.discretisation import axisymmetric, time_steps
 from mpm_verify.mms.manufacture import Field, Manufactured
 from mpm_verify.solver.plugins import SOLUTIONS, create
@@ -56,7 +56,7 @@ def residuals(exact: Manufactured, solution: Any) -> list[tuple[str, float]]:
     F[:, 2, 2] += exact.u(X, t)[:, 0] / X[:, 0] if around else 0.0
     P = np.array([piola(exact, f) for f in F])
     sigma = P @ F.transpose(0, 2, 1) / np.linalg.det(F)[:, None, None]
-    flat = np.stack([sigma[:, "xyz".index(i), "xyz".index(j)] for i, j in COMPONENTS[d]], axis=1)
+    flat = np.stack([sigma[:, AXES.index(end[0]), AXES.index(end[1])] for end in COMPONENTS[d]], axis=1)
     acceleration = central(lambda s: exact.v(X, s), t, k)
     b, shown = acceleration - divergence(exact, X, t, h, around) / exact.rho0, slice(3 if around else d)
     found = [
@@ -92,7 +92,7 @@ def volume(solution: Any) -> float:
     """Relative distance of 2 pi times the volumes per radian from that of the body, which has a rectangle's section."""
     (inner, below), (outer, above) = solution.lower, solution.upper
     whole = np.pi * (outer**2 - inner**2) * (above - below)
-    return abs(2 * np.pi * float(solution.layout((outer - inner) / 4, 4).V0.sum()) / whole - 1)
+    return float(abs(2 * np.pi * float(solution.layout((outer - inner) / 4, 4).V0.sum()) / whole - 1))
 
 
 def central(f, t: float, step: float):  # type: ignore[no-untyped-def]
