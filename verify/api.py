@@ -39,7 +39,8 @@ def manufacture(solution: str, material: str = "", rho0: float | None = None) ->
     -------
     Manufactured
         Functions of reference positions X (P,2) and a time: u, x, v, b (P,2), F, P (P,2,2), sigma (P,4) as xx, yy, zz,
-        xy. Of a solution in three dimensions (P,3), (P,3,3), and (P,6), with yz and xz last.
+        xy. Of a solution in three dimensions (P,3), (P,3,3), and (P,6), with yz and xz last; in one (P,1), (P,1,1) and
+        (P,1); around an axis F and P are (P,5): xx, xy, yx, yy, and zz around.
 
     Raises
     ------
