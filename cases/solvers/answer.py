@@ -71,7 +71,7 @@ def read(out: Path, step: int, X: Floats, spacing: float) -> Frame:
     path = next((path for path in (out / f"result_{step}.{ending}" for ending in ENDINGS) if path.exists()), None)
     if path is None:
         raise RunFailed(FailureKind.NO_ANSWER, step, names={"file": f"result_{step}.csv"})
-    return framed(table(path, step), X, spacing, path.name, step)
+    return framed(table(path, step, X.shape[1]), X, spacing, path.name, step)
 
 
 def framed(

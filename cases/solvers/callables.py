@@ -100,7 +100,7 @@ def called(name: str, case: Case, X: Floats, spacing: float) -> tuple[dict[int, 
         if step not in frames:
             raise RunFailed(FailureKind.NO_ANSWER, step, names={"file": f"frame {step}"})
         try:
-            columns = spread({key: np.asarray(values) for key, values in frames[step].items()})
+            columns = spread({key: np.asarray(values) for key, values in frames[step].items()}, X.shape[1])
         except (AttributeError, TypeError, ValueError):
             raise RunFailed(FailureKind.UNREADABLE, step, names={"file": f"frame {step}"}) from None
         columns.setdefault("id", np.arange(len(next(iter(columns.values()), ()))))

@@ -40,8 +40,11 @@ def reference(columns: dict[str, Floats], dimension: int) -> Floats:
     return np.stack([columns[axis] for axis in AXES[:dimension].upper()], axis=-1)
 
 
-def spread(stored: dict[str, Any]) -> dict[str, Any]:
-    """Columns of arrays by name; X, x, v, F and sigma may hold all their components. Raises ValueError."""
+def spread(stored: dict[str, Any], dimension: int = 2) -> dict[str, Any]:
+    """Columns of arrays by name; X, x, v, F and sigma may hold all their components. Raises ValueError.
+
+    All of them are one component in one dimension alone.
+    """
     found: dict[str, Any] = {}
     for name, values in stored.items():
         if values.ndim == 1 or name not in {one for one, _ in NAMES}:
@@ -50,7 +53,8 @@ def spread(stored: dict[str, Any]) -> dict[str, Any]:
         flat = values.reshape(len(values), -1)
         if name == "sigma" and flat.shape[1] == 9:
             flat = flat[:, UPPER]
-        if (name, flat.shape[1]) not in NAMES:
+        few = flat.shape[1] == 1 < dimension and len(QUANTITIES[2].get(name, ())) > 1
+        if few or (name, flat.shape[1]) not in NAMES:
             raise ValueError(name)
         parts = NAMES[name, flat.shape[1]]
         found |= {part: flat[:, k] for k, part in enumerate(parts)}

@@ -101,7 +101,10 @@ def translated(columns: Columns, given: ColumnMap, X: Floats, spacing: float, fi
     written: dict[str, Any] = {}
     for ours, column in given.columns.items():
         try:
-            written |= {name: (values, column) for name, values in ours_of(ours, column.name, columns, given).items()}
+            written |= {
+                name: (values, column)
+                for name, values in ours_of(ours, column.name, columns, given, X.shape[1]).items()
+            }
         except LookupError:
             raise RunFailed(FailureKind.NO_COLUMN, step, names={"file": file, "column": column.name}) from None
         except ValueError:
@@ -127,7 +130,7 @@ def translated(columns: Columns, given: ColumnMap, X: Floats, spacing: float, fi
     return framed(numbers, X, spacing, file, step, digits)
 
 
-def ours_of(ours: str, theirs: str, columns: Columns, given: ColumnMap) -> dict[str, Any]:
+def ours_of(ours: str, theirs: str, columns: Columns, given: ColumnMap, dimension: int) -> dict[str, Any]:
     """Columns of ours, one component each, of a column of theirs. Raises KeyError, IndexError or ValueError."""
     if ours == "id" and theirs == KEEPS and KEEPS not in columns:
         return {ours: np.arange(len(next(iter(columns.values()))))}
@@ -140,7 +143,7 @@ def ours_of(ours: str, theirs: str, columns: Columns, given: ColumnMap) -> dict[
     if ours == "F" and given.F_order == "column":
         side = round(flat.shape[1] ** 0.5)
         flat = flat.reshape(len(flat), side, side).transpose(0, 2, 1).reshape(len(flat), -1)
-    found = spread({ours: flat})
+    found = spread({ours: flat}, dimension)
     if any(np.ndim(one) != 1 for one in found.values()):
         raise ValueError(ours)
     return found

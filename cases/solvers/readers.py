@@ -13,12 +13,12 @@ ENDINGS = ("csv", "tsv", "txt", "npz", "vtu")
 Columns = Mapping[str, Any]  # arrays (P,...) by name: texts or numbers, as they stand in the file
 
 
-def table(path: Path, step: int) -> dict[str, Any]:
-    """Columns of a file by name, each of one component. Raises RunFailed."""
+def table(path: Path, step: int, dimension: int = 2) -> dict[str, Any]:
+    """Columns of a file by name, each of one component, of a case of a dimension. Raises RunFailed."""
     try:
         stored = dict({".npz": arrays, ".vtu": mesh}.get(path.suffix, text)(path))
         points = {"x": stored.pop("points")} if path.suffix == ".vtu" else {}
-        return spread({**points, **stored})
+        return spread({**points, **stored}, dimension)
     except Exception:  # of three libraries, for anything that is not such a file
         raise RunFailed(FailureKind.UNREADABLE, step, names={"file": path.name}) from None
 
