@@ -797,6 +797,17 @@ def test_a_pass_holds_what_it_promises(errors: list[float]) -> None:
     assert (got.reason.wanted is not None) == (got.outcome is INCONCLUSIVE)
 
 
+@settings(max_examples=60, deadline=None, derandomize=True)
+@given(noisy)
+def test_a_slope_is_never_outside_its_own_local_orders(errors: list[float]) -> None:
+    """It is a mean of them with positive weights, so that nothing has to be told as a contradiction."""
+    got = verdict(errors)
+    assert got.observed is not None
+    first, last = got.window or (0, 4)
+    orders = got.local_orders[first:last]
+    assert min(orders) - 1e-9 <= got.observed <= max(orders) + 1e-9
+
+
 @pytest.mark.parametrize("factor", [0.5, 2 / 3])
 def test_orders_do_not_depend_on_the_refinement_ratio(factor: float) -> None:
     h = factor ** np.arange(3.0, 8.0)

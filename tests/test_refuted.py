@@ -1,6 +1,7 @@
 """Refutation from below: what is sound is never refuted without scatter, and a clear part of another order is."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,6 +10,8 @@ from mpm_verify.cases.judging.fit import Array, Fit
 from mpm_verify.cases.judging.order import Expectation, Level, Outcome, Verdict, judge
 from mpm_verify.cases.judging.records import ReasonCode
 from mpm_verify.cases.judging.refuted import Refutation
+from mpm_verify.cases.mms.execute import execute
+from mpm_verify.cases.mms.run import Run
 from mpm_verify.reports.sentences import verdicts
 
 H = 1 / np.array([8, 16, 32, 64, 128.0])
@@ -82,3 +85,30 @@ def test_what_is_refuted_beside_an_open_time_step_says_both() -> None:
     assert "a part of lower order, 75 % of the finest error" in text
     points = "all of it is of first order, as of a start, a load or a stress at another time level"
     assert text.endswith(f"lowers the finest error by 50 %, order 1.00 in it: {points}")
+
+
+MEASURED = {  # what half the time step does to the error of u of CPDI on axis_aligned, 32 cells, 4 per cell
+    "sound": ({}, "rms", 1.007, ""),
+    "no half-step start": (
+        {"staggered": False, "solution": "axis_aligned:phase=0.5"},
+        "rms",
+        0.784,
+        "if of first order",
+    ),
+    "stress first": ({"stress": "usf"}, "rms", 0.625, "if of first order"),
+    "PIC": ({"transfer": "pic"}, "rms", 1.859, "raises the finest error by 86 %: something is lost in each step"),
+    "a norm over the number of steps": ({}, "printed", 0.712, "as of a norm over all steps that is divided by"),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", MEASURED)
+def test_what_half_the_time_step_shows_of_planted_causes(name: str) -> None:
+    """First order: a start or the order of the stress; growth: what each step loses; 0.71: a norm."""
+    more, norm, ratio, points = MEASURED[name]
+    run = Run(**{"material": "neo_hookean", "cells": 32, **more})  # type: ignore[arg-type]
+    whole, half = (execute(replace(run, courant=courant))[0].errors["u"][norm] for courant in (0.4, 0.2))
+    assert half / whole == pytest.approx(ratio, abs=0.005)
+    got = judged(H**2, halved=half / whole)
+    assert (got.reason.code is ReasonCode.TIME_STEP_COUPLED) == (name != "sound")
+    assert points in verdicts.said(got.reason)

@@ -154,6 +154,7 @@ def test_each_reason_is_reached_and_said(code: ReasonCode) -> None:
     assert len(said) > 20
     assert said != code
     assert "None" not in said
+    assert said.count("% interval") <= 1  # one confidence
     assert (found.verdict.reason.wanted is not None) == (found.verdict.outcome is Outcome.INCONCLUSIVE)
 
 
