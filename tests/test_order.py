@@ -260,7 +260,9 @@ def test_a_table_of_zeros_or_of_no_numbers_is_told_what_to_do() -> None:
     assert said(zeros).startswith("every error is 0, so there is no order: write more digits, compare with")
     none = judge(levels_of([math.nan] * 4), SECOND, floor=0.0, dt_halved=None)
     assert none.outcome is ERROR
-    assert said(none).startswith("none of the 4 errors is a number: look for the first step with a NaN")
+    assert said(none).startswith(
+        "no level finished, as none of the 4 errors is a number: look for the first step with a NaN"
+    )
     some = judge(levels_of([*CLEAN[:4], 0.0]), SECOND, floor=0.0, dt_halved=0.0)
     assert said(some).endswith("run with --cells 4,8,16,32,64")
 

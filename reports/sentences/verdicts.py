@@ -124,8 +124,8 @@ def _nothing_finished(r: Reason) -> str:
     told = [ended(end) for end in r.failed]
     if r.failed and all(end.failure.kind is FailureKind.ERROR_NOT_FINITE for end in r.failed):
         return (
-            f"none of the {len(r.failed)} errors is a number: look for the first step with a NaN in the fields, on the "
-            "coarsest cells first, or for an exact solution that divides by zero"
+            f"no level finished, as none of the {len(r.failed)} errors is a number: look for the first step with a NaN "
+            "in the fields, on the coarsest cells first, or for an exact solution that divides by zero"
         )
     if len(told) > 1 and len(set(told)) == 1:
         return f"no level finished (all {len(told)}: {told[0]})"
