@@ -85,7 +85,7 @@ EXAMPLES = {
     ReasonCode.TIME_STEP_UNKNOWN: Example(clean(), halved=None),
     ReasonCode.TIME_STEP_COUPLED: Example(clean(), halved=1.2),
     ReasonCode.ERROR_RISES: Example((*clean(count=4), 1.1 / 64**2)),
-    ReasonCode.NOT_SETTLED: Example(tuple(np.exp2(-np.cumsum([6, 2.0, 1.83, 1.67, 1.5])).tolist())),
+    ReasonCode.NOT_SETTLED: Example(tuple(np.exp2(-np.cumsum([6, 2.0, 2.4, 1.8, 2.3])).tolist())),
     ReasonCode.ORDER_ABOVE: Example(clean(2.4)),
     ReasonCode.ORDER_UNDECIDED: Example((2.590e-3, 7.000e-4, 2.050e-4, 5.700e-5)),
     ReasonCode.CONTAMINATION_OPEN: Example(clean(1.9)),
@@ -154,6 +154,7 @@ def test_each_reason_is_reached_and_said(code: ReasonCode) -> None:
     assert len(said) > 20
     assert said != code
     assert "None" not in said
+    assert said.count("% interval") <= 1  # one confidence
     assert (found.verdict.reason.wanted is not None) == (found.verdict.outcome is Outcome.INCONCLUSIVE)
 
 

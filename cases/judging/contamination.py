@@ -40,13 +40,13 @@ def contamination(h: Array, error: Array, order: float, chance: float) -> Contam
     Lawson & Hanson (1995), Solving Least Squares Problems, doi:10.1137/1.9781611971217 (non-negative least squares)
     """
     error = error / error[-1]  # squares of small and of large errors are numbers too
-    plain, square = (_Mixed(_terms(h, order, power), error**power) for power in (1, 2))
+    plain, square = (_Mixed(terms(h, order, power), error**power) for power in (1, 2))
     lower, floor = float(plain.fraction[1:-1].sum()), float(plain.fraction[-1])
     squared = float(np.sqrt(square.bound(2 * chance)))
     return Contamination(lower, floor, plain.bound(chance), squared, _shown(plain, square))
 
 
-def _terms(h: Array, order: float, power: int) -> list[Array]:
+def terms(h: Array, order: float, power: int) -> list[Array]:
     """Columns (n,) of the fit of the error to this power, each 1 on the finest level: expected, lower, floor."""
     expected, floor = (h / h[-1]) ** (power * order), np.ones_like(h)
     return [expected, (h / h[-1]) ** (power * (order - 1)), floor] if order > 1 else [expected, floor]
@@ -55,9 +55,9 @@ def _terms(h: Array, order: float, power: int) -> list[Array]:
 class _Mixed:
     """Fit of an error (n,), or of its square, by the terms: fractions of the finest, and the norm of what is left."""
 
-    def __init__(self, terms: Sequence[Array], error: Array) -> None:
-        self.terms, self.error = terms, error
-        part, self.residual = _relative(terms, error)
+    def __init__(self, columns: Sequence[Array], error: Array) -> None:
+        self.terms, self.error = columns, error
+        part, self.residual = relative(columns, error)
         self.fraction = part / part.sum()
         self.dof = len(error) - int(np.count_nonzero(part))
 
@@ -69,7 +69,7 @@ class _Mixed:
     def left(self, total: float) -> float:
         """Norm of what is left where `total` of the finest is of the other terms."""
         mixed = [(1 - total) * self.terms[0] + total * other for other in self.terms[1:]]
-        return _relative(mixed, self.error)[1]
+        return relative(mixed, self.error)[1]
 
     def bound(self, chance: float) -> float:
         """Largest fraction that is not refuted, with deviations of `chance`."""
@@ -90,11 +90,11 @@ def _shown(plain: _Mixed, square: _Mixed) -> float:
     return float(np.sqrt(square.other)) if square.left(SHOWN**2) > most + EXACT else 0.0
 
 
-def _relative(terms: Sequence[Array], error: Array) -> tuple[Array, float]:
-    """Non-negative parts of the terms that fit the error best in relative terms, and the norm of what is left."""
+def relative(columns: Sequence[Array], error: Array) -> tuple[Array, float]:
+    """Non-negative parts of the columns that fit the error best in relative terms, and the norm of what is left."""
     from scipy.optimize import nnls
 
-    part, left = nnls(np.column_stack(terms) * (error[-1] / error)[:, None], np.ones_like(error))
+    part, left = nnls(np.column_stack(columns) * (error[-1] / error)[:, None], np.ones_like(error))
     return part, float(left)
 
 

@@ -11,6 +11,8 @@ from mpm_verify.cases.judging.fit import LEVELS, Fit
 from mpm_verify.cases.judging.records import Action, Ended, Expectation, Level, Recorded, Wanted
 
 LEAST_CELLS = 2  # of a study
+FURTHEST = 3  # levels that are asked for at once
+ROOM = 2 / 3  # of the band above the order: the rest is for the interval
 
 
 @dataclass(frozen=True)
@@ -70,6 +72,26 @@ class Quantity:
         """Run to ask for when one more level would decide: the refinement goes on as it did last."""
         h = [level.h for level in self.ordered]
         return self.wanted(Action.ADD_LEVEL, h[-1] ** 2 / h[-2] if len(h) > 1 else h[-1] / 2)
+
+    @property
+    def beyond(self) -> Wanted:
+        """Runs to ask for where the order is above the band: halved cells, until the excess should be in it.
+
+        What makes an order larger than expected falls with h, as the next term of a series does, and where the local
+        orders still rise it has not begun to.
+        """
+        orders, excess = self.fit.orders, float(self.fit.orders[-1]) - (self.expectation.order or 0.0)
+        first = 1 if len(orders) > 1 and orders[-1] > orders[-2] else 0
+        ahead = [excess / 2 ** max(0, k - first) for k in range(1, FURTHEST + 1)]
+        enough = (k for k in range(1, FURTHEST + 1) if self._settled_by(ahead[:k]))
+        h = [float(self.fit.h[-1]) / 2**k for k in range(1, next(enough, FURTHEST) + 1)]
+        wanted = [self.wanted(Action.ADD_LEVEL, one) for one in h]
+        return replace(wanted[-1], cells=tuple(sorted({cells for one in wanted for cells in one.cells})))
+
+    def _settled_by(self, ahead: Sequence[float]) -> bool:
+        """Whether the finest levels are in the band, with room, after levels of that excess over the order."""
+        excess = [*(self.fit.orders - (self.expectation.order or 0.0)), *ahead][-LEVELS + 1 :]
+        return bool(sum(excess) / len(excess) <= ROOM * self.expectation.above)
 
     @property
     def enough(self) -> Wanted:

@@ -153,7 +153,7 @@ class ReasonCode(StrEnum):
     DIVERGES = "diverges"  # PASS [h_0, error_0, h_1, error_1 of growth; finer runs that failed]
     STALLS = "stalls"  # PASS [order_best, order_last, h_last; those of growth]
     ORDER_BELOW = "order_below"  # FAIL [order, start, end, confidence, last, band_low, band_high; from, of a window]
-    CONTAMINATED = "contaminated"  # FAIL [lower, floor, most, squared]
+    CONTAMINATED = "contaminated"  # FAIL [lower, floor, error: the finest; least of a tail, or most, squared]
     MAGNITUDE = "magnitude"  # FAIL [h, ratio, within]
     FAR_OFF = "far_off"  # FAIL: more than FAR times the recorded error, carried over [h, ratio, recorded_h]
     RUN_ENDED = "run_ended"  # FAIL: particles were inverted or left the grid, where an order is expected
@@ -162,14 +162,14 @@ class ReasonCode(StrEnum):
     NOTHING_FINISHED = "nothing_finished"  # ERROR
     TOO_FEW_LEVELS = "too_few_levels"  # INCONCLUSIVE from here on [levels needed]
     LEVEL_MISSING = "level_missing"
-    NEAR_ROUND_OFF = "near_round_off"  # [error, floor]
+    NEAR_ROUND_OFF = "near_round_off"  # [error, floor; zeros: levels, where nothing else is there]
     TIME_STEP_UNKNOWN = "time_step_unknown"
-    TIME_STEP_COUPLED = "time_step_coupled"  # [ratio: error with half the time step over the other]
+    TIME_STEP_COUPLED = "time_step_coupled"  # [change: error with half the time step over the other, less 1]
     ERROR_RISES = "error_rises"  # [h]
-    NOT_SETTLED = "not_settled"  # [local orders]
+    NOT_SETTLED = "not_settled"  # [local orders; lower, floor, error where they fall]
     ORDER_ABOVE = "order_above"
     ORDER_UNDECIDED = "order_undecided"
-    CONTAMINATION_OPEN = "contamination_open"  # [limit, lower, floor, most, squared]
+    CONTAMINATION_OPEN = "contamination_open"  # [limit, lower, floor, error, most, squared]
     ADDS_IN_SQUARE = "adds_in_square"  # [shown]
     MAGNITUDE_CARRIED = "magnitude_carried"  # [h, ratio]
     NEITHER = "neither"  # growth, or a stall below `stall`, nor convergence [stall, h_0, error_0, h_1, error_1]

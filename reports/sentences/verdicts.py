@@ -1,12 +1,15 @@
 """Verdicts in words: what was expected, what decided, and the run that would decide."""
 
 from collections.abc import Callable, Sequence
+from math import log2
 
 from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.cases.judging.records import Action, Ended, Expectation, Outcome, Reason, ReasonCode, Wanted
 from mpm_verify.reports import words
 from mpm_verify.reports.sentences import failures
+from mpm_verify.solver.failure import FailureKind
 
+SMALL = 0.01  # fraction of the finest error that is not worth a word
 ALIKE = 0.06  # distance from the ratio of errors that a cause has
 
 
@@ -119,6 +122,11 @@ def _seen(r: Reason) -> list[str]:
 
 def _nothing_finished(r: Reason) -> str:
     told = [ended(end) for end in r.failed]
+    if r.failed and all(end.failure.kind is FailureKind.ERROR_NOT_FINITE for end in r.failed):
+        return (
+            f"no level finished, as none of the {len(r.failed)} errors is a number: look for the first step with a NaN "
+            "in the fields, on the coarsest cells first, or for an exact solution that divides by zero"
+        )
     if len(told) > 1 and len(set(told)) == 1:
         return f"no level finished (all {len(told)}: {told[0]})"
     ends = "; ".join(f"h={words.size(end.h)}: {one}" for end, one in zip(r.failed, told, strict=True))
@@ -130,6 +138,11 @@ def _level_missing(r: Reason) -> str:
 
 
 def _near_round_off(r: Reason) -> str:
+    if "zeros" in r.numbers:
+        return (
+            "every error is 0, so there is no order: write more digits, compare with the exact solution and not with "
+            "the answer itself, or take a problem that the method does not solve exactly"
+        )
     error, floor = (words.short(_number(r, name)) for name in ("error", "floor"))
     return f"an error of {error} is not clear of the round-off floor {floor}"
 
@@ -137,7 +150,8 @@ def _near_round_off(r: Reason) -> str:
 def _not_settled(r: Reason) -> str:
     orders = r.numbers["orders"]
     assert isinstance(orders, tuple)
-    return f"the local orders {' '.join(words.order(p) for p in orders)} have not settled"
+    fit = f"; in the best fit there is {_other(r)}" if "floor" in r.numbers else ""
+    return f"the local orders {' '.join(words.order(p) for p in orders)} have not settled{fit}"
 
 
 def _order(r: Reason) -> str:
@@ -147,6 +161,22 @@ def _order(r: Reason) -> str:
     interval = f"{100 * _number(r, 'confidence'):.3g} % interval {start} to {end}"
     window = f" from h={_h(r, 'from')} on" if "from" in r.numbers else ""
     return f"order {order}{window} ({interval}, last pair {last}) against {low} to {high}"
+
+
+def _contaminated(r: Reason) -> str:
+    if "least" not in r.numbers:
+        return f"the expected order is the smaller part: {_other(r)}, together at most {_percent(r, 'most', 1)}"
+    least = f"at least {_percent(r, 'least')} of that error are not of the expected order"
+    return f"the order falls below the band, as there is {_other(r)}; {least}{_coupled_too(r)}"
+
+
+def _other(r: Reason) -> str:
+    """Parts of the best fit that are not of the expected order, the larger first; one below 1 % is left out."""
+    lower, floor = _number(r, "lower"), _number(r, "floor")
+    size = words.short(floor * _number(r, "error"))
+    parts = [(floor, f"a floor of {size}"), (lower, "a part of lower order")]
+    kept = [(part, name) for part, name in sorted(parts, reverse=True) if part >= SMALL]
+    return " and ".join(f"{name}, {words.percent(part, 0)} of the finest error" for part, name in kept)
 
 
 def _parts(r: Reason) -> str:
@@ -165,9 +195,10 @@ def _run_ended(r: Reason) -> str:
 
 def _falls_short(r: Reason) -> str:
     first, last, low = (words.order(_number(r, name)) for name in ("first", "last", "band_low"))
-    flat = f"; it stops falling at {words.short(_number(r, 'flat'))}, a floor" if "flat" in r.numbers else ""
+    flat = f"; it falls to a floor of {words.short(_number(r, 'flat'))}" if "flat" in r.numbers else ""
     return (
         f"the error does not fall as it should: the last two local orders are {first} and {last}, against {low}{flat}"
+        f"{_coupled_too(r)}"
     )
 
 
@@ -176,22 +207,44 @@ def _far_off(r: Reason) -> str:
 
 
 def _coupled(r: Reason) -> str:
-    change = _number(r, "change")
-    word, size = ("raises", change) if change > 0 else ("lowers", -change)
-    return f"coupled: half the time step {word} the finest error by {words.percent(size, 0)}{_points_to(1 + change)}"
+    return f"coupled: {_changes(_number(r, 'change'))}"
+
+
+def _coupled_too(r: Reason) -> str:
+    """What half the time step does to an error that is refuted whatever it does; empty where it does little."""
+    return f"; {_changes(_number(r, 'change'))}" if "change" in r.numbers else ""
+
+
+def _changes(change: float) -> str:
+    """Which way and with which order half the time step changes the finest error, and what that points to."""
+    if change >= 0:
+        return (
+            f"half the time step raises the finest error by {words.percent(change, 0)}: something is lost in each step"
+        )
+    order = words.order(-log2(1 + change)) if change > -1 else "∞"
+    told = f"half the time step lowers the finest error by {words.percent(-change, 0)}, order {order} in it"
+    return f"{told}: {_points_to(1 + change)}"
 
 
 def _points_to(ratio: float) -> str:
-    """Hint on a change of the error with the time step, by its ratio; empty where it points to nothing."""
+    """Cause of a change of the error with the time step, by its ratio; of another, how large a known part would be."""
     known = {
-        0.25: ": an error of second order in the time step",
-        0.5: ": an error of first order in the time step, such as a start, a load or a stress at another time level",
-        0.71: ": a factor such as a norm over all steps that is divided by their number",
+        0.25: "all of it is of second order",
+        0.5: "all of it is of first order, as of a start, a load or a stress at another time level",
+        0.71: "as of a norm over all steps that is divided by their number, not by its root",
     }
     near = min(known, key=lambda one: abs(one - ratio))
-    if ratio > 1:
-        return ": something is lost in each step"
-    return known[near] if abs(near - ratio) < ALIKE else ""
+    if abs(near - ratio) < ALIKE:
+        return known[near]
+    if ratio < min(known):
+        return "it is of a higher order than the step has"
+    first, second = (words.percent((1 - ratio) / (1 - left), 0) for left in (0.5, 0.25))
+    linear = (
+        f"{first} of it, if of first order, as of a start, a load or a stress at another time level, or "
+        if ratio > 0.5
+        else ""
+    )
+    return f"{linear}{second} if of second" if linear else f"{second} of it, if of second order"
 
 
 def _magnitude(r: Reason) -> str:
@@ -231,7 +284,7 @@ SAID: dict[ReasonCode, Callable[[Reason], str]] = {
     ReasonCode.DIVERGES: _diverges,
     ReasonCode.STALLS: _stalls,
     ReasonCode.ORDER_BELOW: lambda r: f"{_order(r)}: below the band",
-    ReasonCode.CONTAMINATED: lambda r: f"the expected order is the smaller part: {_parts(r)}",
+    ReasonCode.CONTAMINATED: _contaminated,
     ReasonCode.MAGNITUDE: _magnitude,
     ReasonCode.FAR_OFF: _far_off,
     ReasonCode.RUN_ENDED: _run_ended,
@@ -249,7 +302,9 @@ SAID: dict[ReasonCode, Callable[[Reason], str]] = {
     ReasonCode.TIME_STEP_COUPLED: _coupled,
     ReasonCode.ERROR_RISES: lambda r: f"the error does not fall on the way to h={_h(r, 'h')}",
     ReasonCode.NOT_SETTLED: _not_settled,
-    ReasonCode.ORDER_ABOVE: lambda r: f"{_order(r)}: it reaches above the band, so expect more, or errors cancel",
+    ReasonCode.ORDER_ABOVE: lambda r: (
+        f"{_order(r)}: it reaches above the band, so expect more, or errors cancel, as a smaller motion shows"
+    ),
     ReasonCode.ORDER_UNDECIDED: lambda r: f"{_order(r)}: undecided",
     ReasonCode.CONTAMINATION_OPEN: lambda r: f"contamination of {_percent(r, 'limit')} is not ruled out: {_parts(r)}",
     ReasonCode.ADDS_IN_SQUARE: lambda r: (
