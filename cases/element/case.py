@@ -80,9 +80,9 @@ def check_test(run: ElementRun, test: ElementTest) -> None:
         raise ValueError(f"{what} strains zz, and {run.material} {why} here; choose a test or path without")
     if test.motion and out and material.rate == "truesdell":
         raise ValueError(f"{what} strains zz, which rate=truesdell does not carry here; choose another rate")
-    if run.start != "isotropic":
-        if material.energy is not None:
-            raise ValueError(f"start = {run.start}: a material with a stress from F starts undeformed; leave start out")
+    if run.start != "isotropic" and material.energy is not None:
+        raise ValueError(f"start = {run.start}: a material with a stress from F starts undeformed; leave start out")
+    if run.start != "isotropic" or test.mixed:
         begin(material, test, run.stress, run.start)
 
 
