@@ -18,6 +18,7 @@ from mpm_verify.cases.element.element import SPACE
 from mpm_verify.cases.element.exam import examination
 from mpm_verify.cases.element.execute import test_of
 from mpm_verify.cases.element.paths import ElementTest
+from mpm_verify.cases.element.resolved import check_digits, check_stress
 from mpm_verify.cases.element.run import AXES, CONFINED, PATH, PROPERTIES, ElementResult, ElementRun
 from mpm_verify.cases.element.space import takes
 from mpm_verify.cases.element.study import ElementStudy
@@ -84,6 +85,9 @@ def check_test(run: ElementRun, test: ElementTest) -> None:
         raise ValueError(f"start = {run.start}: a material with a stress from F starts undeformed; leave start out")
     if run.start != "isotropic" or test.mixed:
         begin(material, test, run.stress, run.start)
+    check_digits(material, test)
+    if run.start != "none" and not run.path:
+        check_stress(material, test, run.stress, run.steps)
 
 
 def parts(asked: Asked) -> list[Asked]:
