@@ -23,6 +23,7 @@ from mpm_verify.solver.log_spread_symbol import SpreadSquared
 from mpm_verify.solver.material.hencky import NEAR, flatness, spread_squared
 from mpm_verify.solver.plugins import MATERIALS, NEGATIVE_CONTROLS, SOLUTIONS, available, canonical, create
 from mpm_verify.solver.state import Floats, Particles
+from mpm_verify.verify.commands.export import made
 
 HENCKY: Any = create(MATERIALS, "hencky")
 LAM, MU = HENCKY.lam, HENCKY.mu
@@ -290,6 +291,14 @@ def test_rates_that_agree_on_a_straight_motion_are_no_other_solid_there() -> Non
     assert {one for one, run in runs.items() if not run.strays} == {
         ("jaumann", "axis_aligned"), ("green_naghdi", "axis_aligned"),
     }  # fmt: skip
+
+
+def test_no_case_is_exported_of_a_rate_that_strays() -> None:
+    """Its motion would be that of the energy; with the logarithmic rate, and where nothing turns, it is exact."""
+    with pytest.raises(ValueError, match="rate without an energy.* export --material hencky"):
+        made("clamped_shear", "hencky_rate:rate=jaumann", 8, 4, 0.4, 4)
+    for solution, rate in (("axis_aligned", "jaumann"), ("clamped_shear", "logarithmic")):
+        assert made(solution, f"hencky_rate:rate={rate}", 4, 1, 0.4, 2).record.steps > 0
 
 
 def test_a_solver_of_somebody_else_promises_nothing() -> None:

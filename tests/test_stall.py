@@ -200,6 +200,15 @@ def test_another_solid_explains_all_of_it() -> None:
     assert "no function of F" in sentences.measured(found.named[0])
 
 
+def test_another_solid_explains_no_growth() -> None:
+    """The distance of two solids is one on all grids: of an error that grows it has what the least one has."""
+    grows = Measured((8, 16, 32, 64), (4e-3, 2e-3, 4e-3, 8e-3), (0.5, 1.0, 2.0, 4.0), (None,) * 4, 4, strays=True)
+    found = explain(grows)
+    assert found is not None
+    assert cause(found, CauseCode.OTHER_SOLID).weight == pytest.approx(0.25)
+    assert [one.code for one in found.named] == [CauseCode.CROSSINGS]
+
+
 def crossed_once() -> dict[str, object]:
     """Faces crossed on each level."""
     return {"crossings": (0.5, 1.0, 1.0, 1.0)}

@@ -256,8 +256,12 @@ def _locking(m: Measured) -> Cause:
 
 
 def _other_solid(m: Measured) -> Cause:
-    """Material in rate form whose rate has no energy: what the errors converge to is the distance of two solids."""
-    return Cause(CauseCode.OTHER_SOLID, Finding.PRESENT, 1.0, {"error": m.errors[-1], "size": m.size})
+    """Material in rate form whose rate has no energy: what the errors converge to is the distance of two solids.
+
+    It is the same on every grid, so it explains of the finest error what is in the least one too, and no growth.
+    """
+    weight = min(m.errors) / m.errors[-1]
+    return Cause(CauseCode.OTHER_SOLID, Finding.PRESENT, weight, {"error": m.errors[-1], "size": m.size})
 
 
 def _crossings(m: Measured, explained: float) -> Cause:

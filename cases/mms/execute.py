@@ -91,7 +91,7 @@ def setup(run: Run) -> tuple[Model, Comparison, int]:
     lower, upper = grid_box(solution, dx)
     shift = -dx * np.array(run.offset) if moves_grid(solution) else np.zeros(2)
     grid = Grid(dx, lower + shift, upper + shift)
-    steps, dt = time_steps(solution, grid.dx, run.courant_number, whole=run.whole_steps)
+    steps, dt = time_steps(solution, grid.dx, run.courant_number, run.whole_steps, run.turns)
     lag = 0.5 * dt if run.staggered else 0.0
     F_lag = dt if run.staggered and run.stress == "usf" else 0.0
 

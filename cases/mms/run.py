@@ -6,6 +6,7 @@ from typing import Any, ClassVar, get_args
 
 from mpm_verify.cases.harness.study import ResultRecord, RunRecord, axis
 from mpm_verify.mms.blind_spots import BlindSpot
+from mpm_verify.mms.duration import quarters
 from mpm_verify.solver.plugins import (
     LAYOUTS,
     MATERIALS,
@@ -153,6 +154,14 @@ class Run(RunRecord):
     def whole_steps(self) -> bool:
         """Whether dt stays as it is, though the steps do not fill the duration."""
         return self.time_step == "printed"
+
+    @property
+    def turns(self) -> int:
+        """Number that its steps are a multiple of: of quarters of a period with damping in the problem, else 1.
+
+        The body force jumps where the motion turns. With these steps that is half a step away from each v.
+        """
+        return quarters(create(SOLUTIONS, self.solution), self.periods) if self.damping_inside else 1
 
     @property
     def damping_inside(self) -> float:

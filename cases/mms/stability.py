@@ -37,7 +37,7 @@ def check_time_steps(runs: Sequence[Run], courants: Sequence[float]) -> None:
     solution, material = lasting(create(SOLUTIONS, specification), runs[0].periods), create(MATERIALS, model)
     steps = {
         (run.cells, run.courant_number): time_steps(
-            solution, width(solution) / run.cells, run.courant_number, whole=run.whole_steps
+            solution, width(solution) / run.cells, run.courant_number, run.whole_steps, run.turns
         )
         for run in runs
     }
