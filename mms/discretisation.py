@@ -24,9 +24,7 @@ def grid_box(solution: Any, dx: float) -> tuple[Floats, Floats]:
     return solution.lower - below, solution.upper + above
 
 
-def time_steps(
-    solution: Any, dx: float, courant: float, whole: bool = False, multiple: int = 1
-) -> tuple[int, float]:
+def time_steps(solution: Any, dx: float, courant: float, whole: bool = False, multiple: int = 1) -> tuple[int, float]:
     """Number of steps of length courant dx / C at most that fill the duration, a multiple, and their length.
 
     `whole` steps have that length, and the last one may end later.

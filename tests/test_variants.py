@@ -200,7 +200,14 @@ def test_no_velocity_is_asked_for_where_the_motion_turns(monkeypatch: pytest.Mon
 
 def test_steps_with_damping_in_the_problem_are_quarters_of_a_period() -> None:
     usual = replace(USUAL, **INSIDE)
-    assert [replace(usual, periods=periods).turns for periods in (0.0, 0.125, 0.25, 0.5, 2.0, 0.3)] == [4, 1, 1, 2, 8, 1]
+    assert [replace(usual, periods=periods).turns for periods in (0.0, 0.125, 0.25, 0.5, 2.0, 0.3)] == [
+        4,
+        1,
+        1,
+        2,
+        8,
+        1,
+    ]
     assert replace(usual, solution="generalised_vortex").turns == 2
     assert (USUAL.turns, replace(USUAL, damping=ALPHA).turns) == (1, 1)
     solution = create(plugins.SOLUTIONS, "axis_aligned")
