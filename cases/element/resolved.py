@@ -50,8 +50,8 @@ def check_stress(material: Any, test: ElementTest, stress: float, steps: int) ->
         while not resolved(material, test, enough, steps):
             enough *= 1.5
         raise ValueError(
-            f"stress = {stress:g}: one strain step of {test.name} makes more than this in {material.name}, or round-off "
-            f"does; choose {float(f'{1.05 * enough:.1e}'):g} or more, or --start none"
+            f"stress = {stress:g}: one strain step of {test.name} makes more than this in {material.name}, or "
+            f"round-off does; choose {float(f'{1.05 * enough:.1e}'):g} or more, or --start none"
         )
 
 

@@ -19,6 +19,7 @@ from mpm_verify.solver.plugins import (
     is_file,
     label,
     load,
+    optional,
     split,
 )
 from mpm_verify.solver.stress_update import Stress
@@ -184,7 +185,7 @@ class Run(RunRecord):
     @property
     def smooths_volume(self) -> bool:
         """Whether the volume ratio, or its rate, is smoothed."""
-        smoothing = None if self.smoothing == "none" else create(SMOOTHINGS, self.smoothing)
+        smoothing = optional(SMOOTHINGS, self.smoothing)
         return bool(
             smoothing and smoothing.of != "stress" and (smoothing.volumetric or split(self.smoothing)[0] == "fbar")
         )
@@ -193,6 +194,16 @@ class Run(RunRecord):
     def strays(self) -> bool:
         """Whether the material has a rate that makes it another solid than the one of its energy."""
         return strays_on(self.shipped_material, self.solution)
+
+    @property
+    def edge_noise(self) -> bool:
+        """Whether FLIP keeps the noise beside a prescribed edge, which update-stress-last alone damps."""
+        if self.solver or self.stress == "usl" or split(self.transfer)[0] != "flip" or not is_file(self.solution):
+            return False
+        try:
+            return "prescribed" in create(SOLUTIONS, self.solution).boundary
+        except ValueError:  # its file may be gone when results are read
+            return False
 
     @property
     def shipped_material(self) -> Any:
