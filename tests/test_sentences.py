@@ -203,7 +203,8 @@ def stalled() -> Any:
             (9, (5e-4, 3e-4)),
             damping=0.1,
             stiffness=5e3,
-            strays=True, edge_noise=True,
+            strays=True,
+            edge_noise=True,
         )
     )
     assert found is not None
