@@ -293,6 +293,34 @@ def test_recorded_errors_are_as_registered_and_others_are_not(material: str, sol
     assert verdict(material, solution, [1.03 * error for error in rows]) == (Outcome.FAIL, ReasonCode.MAGNITUDE)
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("run", [run for run in rates.runs() if run.cells == 12], ids=str)
+def test_recorded_errors_of_hencky_solids(run: Run) -> None:
+    """Run anew, ten times as near as the order rule asks for: every material, rate and solution of the table."""
+    result, known = execute(run)[0], dict(table()[run.material, run.solution, "cpdi", "4"])[12]
+    for quantity, error in known.items():
+        assert result.errors[quantity]["rms"] == pytest.approx(error, rel=1e-3), quantity
+
+
+@pytest.mark.parametrize(
+    ("material", "solution", "quoted", "finest"),
+    [
+        ("hencky", "axis_aligned", (2.06, 1.92, 1.96, 1.94), 1.756e-4),
+        ("hencky", "clamped_shear", (1.95, 2.01, 2.02, 2.01), 3.298e-4),
+        ("hencky", "swirl", (2.04, 2.11, 2.03, 2.02), 7.556e-4),
+        ("hencky_rate", "clamped_shear", (1.95, 2.01, 2.02, 2.01), 3.298e-4),
+        ("hencky_rate", "swirl", (2.04, 2.11, 2.03, 2.02), 7.557e-4),
+    ],
+)
+def test_quoted_orders_of_hencky_solids(material: str, solution: str, quoted: tuple[float, ...], finest: float) -> None:
+    rows = dict(table()[canonical(MATERIALS, material), solution, "cpdi", "4"])
+    cells = (8, 12, 16, 24, 32)
+    errors = np.array([rows[n]["u"] for n in cells])
+    local = np.log(errors[:-1] / errors[1:]) / np.log(np.array(cells[1:]) / cells[:-1])
+    assert local == pytest.approx(quoted, abs=0.01)
+    assert errors[-1] == pytest.approx(finest, rel=1e-3)
+
+
 def test_the_limit_of_another_rate_is_no_order_of_the_right_one() -> None:
     """Floors of 3.9 and 9.8 % of u: as if of the logarithmic rate both are refused, by magnitude and without it."""
     for rate in ("green_naghdi", "jaumann"):

@@ -342,6 +342,24 @@ def test_the_table_has_the_runs_that_are_made() -> None:
     assert {run.solution for run in variants()} == set(SOLUTIONS)
 
 
+QUOTED = [  # orders of u of CPDI from 8 to 64 cells, on the second and the third solution
+    ({"damping": ALPHA}, (1.62, 0.81, 0.18), (1.86, 1.11, 0.39)),
+    (INSIDE, (1.97, 1.97, 1.97), (2.14, 2.01, 2.00)),
+    ({"periods": 0.125}, (2.01, 1.99, 1.99), (1.80, 1.92, 1.95)),
+    ({"periods": 2.0}, (2.10, 2.03, 2.00), (2.26, 2.04, 2.00)),
+]
+
+
+@pytest.mark.parametrize(("beside", "sheared", "swirling"), QUOTED)
+def test_quoted_orders_on_two_more_solutions(
+    beside: dict[str, Any], sheared: tuple[float, ...], swirling: tuple[float, ...]
+) -> None:
+    """Within 0.01, of the errors that `test_recorded_errors` runs anew."""
+    for solution, quoted in (("clamped_shear", sheared), ("swirl", swirling)):
+        rows = dict(table()[key(replace(USUAL, solution=solution, **beside))])
+        assert orders([rows[cells]["u"] for cells in CELLS[::2]]) == pytest.approx(quoted, abs=0.01)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("run", [run for run in variants() if run.cells == 16], ids=lambda run: "-".join(key(run)))
 def test_recorded_errors(run: Run) -> None:
