@@ -9,8 +9,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import StrEnum
 
+from mpm_verify.solver.sides import SIDES
+
 Numbers = dict[str, float]
-SIDES = ("left", "right", "bottom", "top")
 OPEN = {"pulled": 1.0, "prescribed": 2.0, "found": 3.0}  # kinds of edges; the last: pulled, as it is nothing else
 FAINT = 0.01  # fraction below which a term is not seen beside the others
 WEAK = 0.05  # fraction of the force or the acceleration that matters most

@@ -29,12 +29,12 @@ def grid_box(solution: Any, dx: float) -> tuple[Floats, Floats]:
     return solution.lower - below, solution.upper + above
 
 
-def time_steps(solution: Any, dx: float, courant: float, whole: bool = False) -> tuple[int, float]:
-    """Number of steps of length courant dx / C at most that fill the duration, and their length.
+def time_steps(solution: Any, dx: float, courant: float, whole: bool = False, multiple: int = 1) -> tuple[int, float]:
+    """Number of steps of length courant dx / C at most that fill the duration, a multiple, and their length.
 
     `whole` steps have that length, and the last one may end later.
     """
-    steps = ceil(solution.duration / (courant * dx / solution.C) * (1 - 1e-12))
+    steps = ceil(solution.duration / (courant * dx / solution.C) * (1 - 1e-12) / multiple) * multiple
     if whole:
         return steps, courant * dx / solution.C
     return steps, solution.duration / steps

@@ -9,6 +9,12 @@ def period(solution: Any) -> float:
     return float(getattr(solution, "period", solution.duration))
 
 
+def quarters(solution: Any, periods: float) -> int:
+    """Quarters of a period in that many periods, 0 for the duration it states; 1 where they are a fraction."""
+    count = 4 * (periods or solution.duration / period(solution))
+    return max(1, round(count)) if abs(count - round(count)) < 1e-9 else 1
+
+
 def lasting(solution: Any, periods: float) -> Any:
     """Make the same solution over a number of its periods.
 

@@ -15,9 +15,9 @@ from typing import Any
 
 import numpy as np
 
-from mpm_verify.mms.blind_spots import SIDES
 from mpm_verify.mms.manufacture import Manufactured
 from mpm_verify.mms.measure import CELLS, TIMES, Sampler, WaveMaterial, largest, least_stress
+from mpm_verify.solver.sides import SIDES
 from mpm_verify.solver.state import Floats
 
 POINTS = 65  # sampled on a side

@@ -12,11 +12,12 @@ from typing import Any, Protocol
 import numpy as np
 import sympy as sp
 
-from mpm_verify.mms.blind_spots import OPEN, SIDES
+from mpm_verify.mms.blind_spots import OPEN
 from mpm_verify.mms.components import square
 from mpm_verify.mms.discretisation import axisymmetric, boundary_kinds
 from mpm_verify.mms.manufacture import Manufactured
 from mpm_verify.solver.layout import Layout, shared_corners
+from mpm_verify.solver.sides import SIDES
 from mpm_verify.solver.state import Floats
 
 TIMES = 33  # even steps hit the extremes of a wave whose period divides the duration

@@ -68,9 +68,15 @@ class Record:
 
     @cached_property
     def drawn(self) -> list[Series]:
-        """Refinements that figures show: of what else varies, those with the first value."""
-        first = {name: getattr(self.study.runs[0], name) for name in self.varied}
-        return [s for s in self.series if all(getattr(s.first, name) == value for name, value in first.items())]
+        """Refinements that figures show: of what else varies, those with the first value that their solution has."""
+        first: dict[str, tuple[Any, ...]] = {}
+        for s in self.series:
+            first.setdefault(_solution(s.first), self._else(s.first))
+        return [s for s in self.series if self._else(s.first) == first[_solution(s.first)]]
+
+    def _else(self, run: Run) -> tuple[Any, ...]:
+        """Values of a run in what varies beside method, solution and particle count."""
+        return tuple(getattr(run, name) for name in self.varied)
 
     def columns(self, run: Run) -> dict[str, Any]:
         """Names and values that tell the refinement of a run in a table."""
@@ -142,6 +148,11 @@ class Record:
     def arrays(self, run: Run) -> Arrays:
         """Particles of a stored run at its last step. Raises StoreError if they cannot be read."""
         return self.store.arrays(self.results[run.digest].digest)
+
+
+def _solution(run: Run) -> str:
+    """Solution of a run; none of a case without solutions."""
+    return getattr(run, "solution", "")
 
 
 def read(folder: Path) -> Record:

@@ -178,6 +178,11 @@ def camel(name: str) -> str:
     return "".join(part.capitalize() for part in name.split("_"))
 
 
+def optional(package: str, specification: str) -> Any:
+    """Make a plug-in with its parameters; None of `none`. Raises ValueError as `create`."""
+    return None if specification == "none" else create(package, specification)
+
+
 def create(package: str, specification: str) -> Any:
     """Make a plug-in with its parameters.
 

@@ -24,12 +24,12 @@ from numpy.typing import NDArray
 from mpm_verify.solver.context import Context
 from mpm_verify.solver.failure import FailureKind, RunFailed
 from mpm_verify.solver.layout import Layout
+from mpm_verify.solver.sides import SIDES
 from mpm_verify.solver.state import Floats, Ints, Particles
 from mpm_verify.solver.surface_kernels import hats, weigh
 from mpm_verify.solver.weights import Basis
 
 Kind = Literal["pulled", "prescribed"]
-SIDES = ("left", "right", "bottom", "top")  # side // 2 is the axis of the normal, side % 2 lower or upper
 STIFFNESS = 2.0  # with 1 a long run ends inverted, with more its step has to be shorter
 DRIVEN_STEP = 0.6  # of dx / (c + |v|): a longer step is not stable with driven edges
 GAUSS = np.array([0.5 - 0.5 / sqrt(3), 0.5 + 0.5 / sqrt(3)])  # fractions of a face

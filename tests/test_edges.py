@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from mpm_verify.cases.harness.build import Asked, build
 from mpm_verify.cases.mms.execute import execute, setup
 from mpm_verify.cases.mms.expectations import expected
 from mpm_verify.cases.mms.run import Run
@@ -261,6 +262,37 @@ def test_steps_are_shorter_with_driven_edges(write: Write, kind: str, courant: f
         check_time_step(model)
     with nullcontext() if stable else pytest.raises(ValueError, match=r"above the stability limit of 0.51\d; .*--cour"):
         check_time_steps([one], [courant])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("stress", ["musl", "usf"])
+def test_flip_keeps_noise_beside_a_prescribed_edge(write: Write, stress: str) -> None:
+    """Order below 1 on 8 and 16 cells where usl has 2 and apic 1.8; the run says so of itself."""
+    path = write("all move", "prescribed")
+    assert orders(path, (8, 16), stress=stress)[0] < 1.0
+    assert orders(path, (8, 16), stress=stress, transfer="apic")[0] > 1.75
+    assert run(path, 8, stress=stress).edge_noise
+    others = ({"stress": "usl"}, {"stress": stress, "transfer": "apic"}, {"stress": stress, "transfer": "pic"})
+    assert not any(run(path, 8, **other).edge_noise for other in others)
+    assert not run(write("all move"), 8, stress=stress).edge_noise
+
+
+def test_a_total_lagrangian_method_refuses_cut_domains_at_open_edges(write: Write) -> None:
+    """Shifted particles do not converge there: 2.0e-3 on 8 and 16 cells; between walls, and of CPDI, they run."""
+    open_, held = write("all move", "prescribed"), "clamped_shear"
+    for more, said in (
+        ({"offset": [(0.25, 0.1)]}, "beside edges that are prescribed"),
+        ({"replicates": 3}, "replicates"),
+    ):
+        replicates = more.pop("replicates", 1)
+        asked: dict[str, Any] = {"method": ["tlmpm"], "cells": [8, 16], "ppc": [4], **more}
+        with pytest.raises(ValueError, match=said) as told:
+            build(Asked("mms", {**asked, "solution": [open_]}, replicates), "verify")
+        assert "\n" not in str(told.value)
+        build(Asked("mms", {**asked, "solution": [held]}, replicates), "verify")
+        build(Asked("mms", {**asked, "solution": [open_], "method": ["cpdi"]}, replicates), "verify")
+    coarse, fine = (error(open_, n, method="tlmpm", offset=(0.25, 0.1)) for n in (8, 16))
+    assert fine > 0.9 * coarse > 1e-3
 
 
 def test_export_says_what_acts(write: Write) -> None:

@@ -14,7 +14,7 @@ from mpm_verify.cases.element.begin import begin
 from mpm_verify.cases.element.case import check
 from mpm_verify.cases.element.curves import element_of
 from mpm_verify.cases.element.exact import exact
-from mpm_verify.cases.element.exam import path_ends
+from mpm_verify.cases.element.exam import deformed, path_ends
 from mpm_verify.cases.element.following import Followed, follow
 from mpm_verify.cases.element.judged import checks
 from mpm_verify.cases.element.motion import Motion
@@ -151,6 +151,76 @@ def test_a_bad_mixture_is_one_line(text: str, words: str, tmp_path: Path) -> Non
     with pytest.raises(ValueError, match=words) as told:
         written(tmp_path, text)
     assert "\n" not in str(told.value)
+
+
+# ---- the first row
+
+FROM_STRESS = "exx,eyy,exy,sxx,syy\n0,0,0,{0},{0}\n,,0,-6000,-9000\n"
+
+
+@pytest.mark.parametrize(
+    ("name", "start", "stress", "words"),
+    [
+        (
+            "neo_hookean",
+            "isotropic",
+            -5000,
+            "gives sxx = -5000, where a material with a stress from F has 0; write that",
+        ),
+        ("hencky_rate", "isotropic", 1e-9, "gives sxx = 1e-09, where a material with a stress from F has 0"),
+        ("neo_hookean", "isotropic", 0, ""),
+        ("mohr_coulomb", "isotropic", -5000, ""),
+        ("mohr_coulomb", "k0", -5000, r"gives sxx = -5000, and start = k0 makes it -2424.81; leave --start out"),
+        ("ubcsand", "oedometric", -4900, "and start = oedometric makes it"),
+        ("mohr_coulomb:c=1000", "none", -5000, "gives sxx = -5000, and start = none makes it 0"),
+        ("mohr_coulomb:c=1000", "none", 0, ""),
+    ],
+)
+def test_two_stresses_at_the_start_are_one_line(
+    name: str, start: str, stress: float, words: str, tmp_path: Path
+) -> None:
+    """A first row that says another stress than the start or the energy; what agrees is taken."""
+    path = tmp_path / "mine.csv"
+    path.write_text(FROM_STRESS.format(stress))
+    run = ElementRun(name, "path", start=start, path=str(path))
+    if words:
+        with pytest.raises(ValueError, match=words) as told:
+            check([run])
+        assert "\n" not in str(told.value)
+        return
+    check([run])
+    begun = begin(of(name), from_file(path), 5e3, start)
+    assert begun.sigma[:2] == pytest.approx(stress)
+
+
+def test_sand_without_a_start_stops_where_it_has_no_stiffness(tmp_path: Path) -> None:
+    """No crash, and no curve: it says the step and the line."""
+    found = walked(of("ubcsand"), written(tmp_path, FROM_STRESS.format(0)), 10)
+    assert found.failed is not None
+    assert (found.failed.step, found.failed.line) == (1, 3)
+
+
+@pytest.mark.parametrize("name", ["neo_hookean", "hencky", "hencky_rate:rate=logarithmic"])
+def test_a_motion_that_starts_deformed(name: str, tmp_path: Path) -> None:
+    """The stress of its energy in the first row, as if the way there had been run; that of --start in rate form."""
+    whole, second = "Fxx,Fxy,Fyx,Fyy\n1,0,0,1\n1.2,0.3,0,0.9\n", "1.2,0.3,0,0.9\n1.3,0.3,0.1,0.9\n"
+    reached = walked(of(name), written(tmp_path, whole), 200).sigma[-1]
+    test = written(tmp_path, whole.split("\n")[0] + "\n" + second)
+    found = study(of(name), test, 5e3, 50)
+    begun = begin(of(name), test, 5e3)
+    np.testing.assert_allclose(begun.sigma, reached, rtol=1e-4)
+    assert np.abs(begun.sigma).max() > 1e3
+    assert found.source == "derivative of the energy"
+    assert found.errors[-1] < 1e-6
+    assert [one.outcome for one in checks(of(name), found)] == [Outcome.PASS]
+    (remark,) = deformed(of(name), [found])
+    assert "starts deformed, at Fxx 1.2, Fxy 0.3, Fyx 0, Fyy 0.9: the stress there is that of its energy" in sentence(
+        remark
+    )
+    soil = of("mohr_coulomb")
+    assert (begin(soil, test, 5e3).sigma == [-5e3, -5e3, -5e3, 0]).all()
+    assert "that of --start" in sentence(deformed(soil, [replace(found, test=test)])[0])
+    assert not deformed(soil, [replace(found, test=TESTS["finite_shear"])])
 
 
 # ---- motions

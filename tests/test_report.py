@@ -210,21 +210,42 @@ def test_study_with_one_method(tmp_path: Path, method: str) -> None:
     assert ("The norm explains this, and so does the duration" in said) == (method == "mpm")
 
 
-@pytest.mark.slow
-def test_two_solutions_are_told_apart(tmp_path: Path) -> None:
-    store = Store(fixtures.make(tmp_path, ("cpdi",)))
-    study, other = store.study(), "clamped_shear:G=0.05"
-    runs = tuple(replace(run, solution=other) for run in study.runs)
-    declared = tuple(replace(d, run=replace(d.run, solution=other)) for d in study.plans)
+def beside(folder: Path, **other: str) -> None:
+    """Add to the study of CPDI the same runs with other values."""
+    store = Store(fixtures.make(folder, ("cpdi",)))
+    study = store.study()
+    runs = tuple(replace(run, **other) for run in study.runs)
+    declared = tuple(replace(d, run=replace(d.run, **other)) for d in study.plans)
     store.create(replace(study, runs=study.runs + runs, plans=study.plans + declared))
     for old, new in zip(study.runs, runs, strict=True):
         if (result := store.get(old.digest)) is not None:
             store.put(replace(result, run=new, digest=new.digest), store.arrays(old.digest))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("material", ["neo_hookean", "hencky"])
+def test_two_solutions_are_told_apart(material: str, tmp_path: Path) -> None:
+    """Of one material and of two: each solution has its figures."""
+    other = "clamped_shear:G=0.05"
+    beside(tmp_path, solution=other, material=material)
     said = text(render(tmp_path).read_text())
-    assert f"CPDI, 4 per cell, {other}: u in rms" in said
+    assert f"CPDI, 4 per cell, {other}" in said
     assert said.count("Seen by clamped_shear, generalised_vortex, swirl.") == 2
     names = {file.stem for file in tmp_path.glob("figures/*.svg")}
     assert {"figure1_axis_aligned", "figure1_clamped_shear_G_0_05"} <= names
+
+
+def test_each_solution_has_what_is_drawn_of_it(tmp_path: Path) -> None:
+    """Of what else varies the first value that the solution has: materials of two solutions need not be alike."""
+    beside(tmp_path, solution="swirl", material="hencky")
+    with fixtures.sources():
+        drawn = read(tmp_path).drawn
+        assert {(s.first.solution, s.first.material, s.first.ppc) for s in drawn} == {
+            (*problem, ppc) for problem in (("axis_aligned", "neo_hookean"), ("swirl", "hencky")) for ppc in (1, 4, 9)
+        }
+    beside(tmp_path, material="hencky")
+    with fixtures.sources():
+        assert {s.first.material for s in read(tmp_path).drawn} == {"neo_hookean"}
 
 
 def test_results_of_earlier_sources_are_shown_and_named_as_such(tmp_path: Path) -> None:

@@ -205,6 +205,7 @@ def stalled() -> Any:
             damping=0.1,
             stiffness=5e3,
             strays=True,
+            edge_noise=True,
         )
     )
     assert found is not None

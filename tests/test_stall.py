@@ -200,6 +200,26 @@ def test_another_solid_explains_all_of_it() -> None:
     assert "no function of F" in sentences.measured(found.named[0])
 
 
+def test_another_solid_explains_no_growth() -> None:
+    """The distance of two solids is one on all grids: of an error that grows it has what the least one has."""
+    grows = Measured((8, 16, 32, 64), (4e-3, 2e-3, 4e-3, 8e-3), (0.5, 1.0, 2.0, 4.0), (None,) * 4, 4, strays=True)
+    found = explain(grows)
+    assert found is not None
+    assert cause(found, CauseCode.OTHER_SOLID).weight == pytest.approx(0.25)
+    assert [one.code for one in found.named] == [CauseCode.CROSSINGS]
+
+
+def test_noise_beside_a_prescribed_edge_is_a_stall_without_a_fall() -> None:
+    """Orders 0.83 and 1.35 of FLIP with musl rise, and are those of no method; three quarters are of the noise."""
+    noisy = Measured((8, 16, 32), (2.11e-4, 1.19e-4, 4.68e-5), (0.1, 0.2, 0.4), (None,) * 3, 4)
+    assert explain(noisy) is None
+    found = explain(replace(noisy, edge_noise=True))
+    assert found is not None
+    assert [one.code for one in found.named] == [CauseCode.EDGE_NOISE]
+    assert "--transfer apic has none" in sentences.measured(found.named[0])
+    assert explain(replace(noisy, edge_noise=True, errors=(9.69e-5, 2.51e-5, 5.71e-6))) is None
+
+
 def crossed_once() -> dict[str, object]:
     """Faces crossed on each level."""
     return {"crossings": (0.5, 1.0, 1.0, 1.0)}

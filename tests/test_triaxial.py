@@ -1,5 +1,6 @@
 """Strains out of the plane, triaxial tests with known ends, and starts: each check is seen to fail where it should."""
 
+import re
 from dataclasses import replace
 from math import radians, sin
 from pathlib import Path
@@ -15,7 +16,9 @@ from mpm_verify.cases.element.exact import exact
 from mpm_verify.cases.element.following import follow
 from mpm_verify.cases.element.judged import checks
 from mpm_verify.cases.element.known_ends import ends
+from mpm_verify.cases.element.path_file import from_file
 from mpm_verify.cases.element.paths import CELL, TESTS, ElementTest, given
+from mpm_verify.cases.element.resolved import check_digits, made
 from mpm_verify.cases.element.space import takes
 from mpm_verify.cases.element.study import study
 from mpm_verify.cases.element.triaxial_exact import MERIDIANS
@@ -211,6 +214,49 @@ def test_what_cannot_be_put_through_it_is_one_line(name: str, start: str, words:
     values = {"material": [name], "test": ["triaxial_compression"], "start": [start]}
     with pytest.raises(ValueError, match=words):
         build(Asked("element", values), "verify")
+
+
+@pytest.mark.parametrize("name", ["mohr_coulomb", "drucker_prager", "ubcsand", "mohr_coulomb:c=1000"])
+def test_a_stress_that_no_step_resolves_is_one_line(name: str) -> None:
+    """At 1e-9 Pa, and the stress that is told instead is taken; strength is met there with 16 times the steps."""
+    words = r"one strain step of triaxial_compression makes more .* choose ([0-9.e+-]+) or more"
+    asked = {"material": [name], "test": ["triaxial_compression"]}
+    with pytest.raises(ValueError, match=words) as told:
+        build(Asked("element", {**asked, "stress": [1e-9]}), "verify")
+    assert "\n" not in str(told.value)
+    found = re.search(words, str(told.value))
+    assert found is not None
+    enough = float(found[1])
+    build(Asked("element", {**asked, "stress": [enough]}), "verify")
+    assert 1e-3 < enough < 50
+    with pytest.raises(ValueError, match="or more"):
+        build(Asked("element", {**asked, "stress": [enough / 2]}), "verify")
+
+
+def test_stresses_below_round_off_in_a_file_are_one_line(tmp_path: Path) -> None:
+    path = tmp_path / "mine.csv"
+    for stress, fine in ((1e-9, False), (1.0, True)):
+        path.write_text(f"exx,eyy,ezz,exy,sxx,szz\n,0,,0,-{stress},-{stress}\n,-0.05,,0,-{stress},-{stress}\n")
+        test = from_file(path)
+        if fine:
+            check_digits(of("mohr_coulomb"), test)
+            continue
+        with pytest.raises(ValueError, match=r"stresses up to 1e-09 are below round-off in mohr_coulomb; write 0\.001"):
+            check_digits(of("mohr_coulomb"), test)
+        check_digits(of("hypoelastic"), test)
+
+
+def test_a_coarse_step_at_a_low_stress_gives_no_verdict() -> None:
+    """Extension from 100 Pa, where the coarsest step makes 6 times that: none of ERROR; sound and spoilt at 5000 Pa."""
+    soil, test = of("mohr_coulomb"), TESTS["triaxial_extension"]
+    assert made(soil, test, 100.0, 50) == pytest.approx((soil.lam + 2 * soil.mu) * 0.025 / 50 / 100)
+    coarse = study(soil, test, 100.0, 50)
+    assert coarse.failed is not None
+    assert not checks(soil, coarse)
+    fine = study(soil, test, 5e3, 50)
+    assert {check.outcome for check in checks(soil, fine)} == {Outcome.PASS}
+    spoilt = replace(fine, failed=replace(coarse.failed, steps=50))
+    assert {check.outcome for check in checks(soil, spoilt)} == {Outcome.ERROR}
 
 
 def test_who_is_asked_without_being_told() -> None:

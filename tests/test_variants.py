@@ -25,6 +25,7 @@ from mpm_verify.cases.mms.recording import variants
 from mpm_verify.cases.mms.run import QUANTITIES, Result, Run
 from mpm_verify.cases.mms.variants import AXES, SOLUTIONS, key, table
 from mpm_verify.mms.damping import damped
+from mpm_verify.mms.discretisation import time_steps
 from mpm_verify.mms.duration import lasting, period
 from mpm_verify.mms.kernel_source import T_VELOCITY
 from mpm_verify.mms.manufacture import manufacture
@@ -184,6 +185,39 @@ def test_without_damping_the_expressions_are_the_same() -> None:
     assert [str(b) for b in none.b] == [str(b) for b in made.fields.b]
 
 
+@pytest.mark.slow
+def test_no_velocity_is_asked_for_where_the_motion_turns(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Steps are a multiple of quarters of a period: 14 and 18 cells are then as even as 12 and 16; else 9 % apart."""
+
+    def spread() -> float:
+        even = [error * n**2 for n, error in zip((12, 14, 16, 18), errors(runs(12, 14, 16, 18, **INSIDE)), strict=True)]
+        return max(even) / min(even) - 1
+
+    assert spread() < 0.04
+    monkeypatch.setattr(Run, "turns", 1)
+    assert spread() > 0.09
+
+
+def test_steps_with_damping_in_the_problem_are_quarters_of_a_period() -> None:
+    usual = replace(USUAL, **INSIDE)
+    assert [replace(usual, periods=periods).turns for periods in (0.0, 0.125, 0.25, 0.5, 2.0, 0.3)] == [
+        4,
+        1,
+        1,
+        2,
+        8,
+        1,
+    ]
+    assert replace(usual, solution="generalised_vortex").turns == 2
+    assert (USUAL.turns, replace(USUAL, damping=ALPHA).turns) == (1, 1)
+    solution = create(plugins.SOLUTIONS, "axis_aligned")
+    for cells in (8, 10, 14, 16):
+        steps, dt = time_steps(solution, 1 / cells, 0.4, multiple=4)
+        assert steps % 4 == 0
+        assert steps - time_steps(solution, 1 / cells, 0.4)[0] in (0, 2)
+        assert steps * dt == pytest.approx(solution.duration)
+
+
 def test_damping_stalls_unless_it_is_in_the_problem() -> None:
     """Independent code, 5 %: a floor of 1.9 % of u, orders 1.72 0.42 0.01; inside the problem 2.12 1.89 2.00."""
     plain, outside, inside = (stored(**beside) for beside in ({}, {"damping": ALPHA}, INSIDE))
@@ -306,6 +340,24 @@ def test_the_table_has_the_runs_that_are_made() -> None:
     made = {(*key(run), run.cells) for run in variants()}
     assert {(*name, cells) for name, rows in table().items() for cells, _ in rows} == made
     assert {run.solution for run in variants()} == set(SOLUTIONS)
+
+
+QUOTED = [  # orders of u of CPDI from 8 to 64 cells, on the second and the third solution
+    ({"damping": ALPHA}, (1.62, 0.81, 0.18), (1.86, 1.11, 0.39)),
+    (INSIDE, (1.97, 1.97, 1.97), (2.14, 2.01, 2.00)),
+    ({"periods": 0.125}, (2.01, 1.99, 1.99), (1.80, 1.92, 1.95)),
+    ({"periods": 2.0}, (2.10, 2.03, 2.00), (2.26, 2.04, 2.00)),
+]
+
+
+@pytest.mark.parametrize(("beside", "sheared", "swirling"), QUOTED)
+def test_quoted_orders_on_two_more_solutions(
+    beside: dict[str, Any], sheared: tuple[float, ...], swirling: tuple[float, ...]
+) -> None:
+    """Within 0.01, of the errors that `test_recorded_errors` runs anew."""
+    for solution, quoted in (("clamped_shear", sheared), ("swirl", swirling)):
+        rows = dict(table()[key(replace(USUAL, solution=solution, **beside))])
+        assert orders([rows[cells]["u"] for cells in CELLS[::2]]) == pytest.approx(quoted, abs=0.01)
 
 
 @pytest.mark.slow

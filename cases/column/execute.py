@@ -32,7 +32,7 @@ from mpm_verify.solver.boundary import Walls, box, moving
 from mpm_verify.solver.damping import Damping
 from mpm_verify.solver.failure import RunFailed
 from mpm_verify.solver.layout import rectangle
-from mpm_verify.solver.plugins import MATERIALS, METHODS, SMOOTHINGS, TRANSFERS, create
+from mpm_verify.solver.plugins import MATERIALS, METHODS, SMOOTHINGS, TRANSFERS, create, optional
 from mpm_verify.solver.state import Floats, Grid, Particles
 from mpm_verify.solver.step import Material, Model, Observer, Scheme, advance, check_time_step
 from mpm_verify.solver.weights import Basis
@@ -62,7 +62,7 @@ def setup(run: ColumnRun) -> tuple[Model, int]:
         grid, particles, basis, material, walls(run, grid), dt,
         Scheme(create(TRANSFERS, run.transfer), deformation=run.deformation),  # type: ignore[arg-type]
         Damping(run.damping, run.damping_kind) if run.damping else None,  # type: ignore[arg-type]
-        None if run.smoothing == "none" else create(SMOOTHINGS, run.smoothing),
+        optional(SMOOTHINGS, run.smoothing),
     )  # fmt: skip
     return model, steps
 

@@ -18,6 +18,7 @@ from mpm_verify.cases.element.element import SPACE
 from mpm_verify.cases.element.exam import examination
 from mpm_verify.cases.element.execute import test_of
 from mpm_verify.cases.element.paths import ElementTest
+from mpm_verify.cases.element.resolved import check_digits, check_stress
 from mpm_verify.cases.element.run import AXES, CONFINED, PATH, PROPERTIES, ElementResult, ElementRun
 from mpm_verify.cases.element.space import takes
 from mpm_verify.cases.element.study import ElementStudy
@@ -80,10 +81,13 @@ def check_test(run: ElementRun, test: ElementTest) -> None:
         raise ValueError(f"{what} strains zz, and {run.material} {why} here; choose a test or path without")
     if test.motion and out and material.rate == "truesdell":
         raise ValueError(f"{what} strains zz, which rate=truesdell does not carry here; choose another rate")
-    if run.start != "isotropic":
-        if material.energy is not None:
-            raise ValueError(f"start = {run.start}: a material with a stress from F starts undeformed; leave start out")
+    if run.start != "isotropic" and material.energy is not None:
+        raise ValueError(f"start = {run.start}: a material with a stress from F starts undeformed; leave start out")
+    if run.start != "isotropic" or test.mixed:
         begin(material, test, run.stress, run.start)
+    check_digits(material, test)
+    if run.start != "none" and not run.path:
+        check_stress(material, test, run.stress, run.steps)
 
 
 def parts(asked: Asked) -> list[Asked]:

@@ -1,6 +1,7 @@
 """Exact curves of element tests, where a material has them: what its numbers are drawn over and judged by."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ from mpm_verify.cases.element import ubcsand_exact as ubc
 from mpm_verify.cases.element import ubcsand_triaxial
 from mpm_verify.cases.element.axes import TRIAXIAL_TESTS
 from mpm_verify.cases.element.begin import begin
-from mpm_verify.cases.element.curves import EnergyElement, EnergyMotion, columns, start
+from mpm_verify.cases.element.curves import EnergyElement, EnergyMotion, columns
 from mpm_verify.cases.element.element import State
 from mpm_verify.cases.element.following import Followed, follow
 from mpm_verify.cases.element.legs import STRESS
@@ -33,11 +34,11 @@ def exact(material: Any, test: ElementTest, stress: float, begun: State | None =
 
     `begun` is the state at the start, the isotropic `stress` if it is left out.
     """
+    begun = begin(material, test, stress) if begun is None else begun
     if material.energy is not None and not (material.strays if test.motion else getattr(material, "convected", False)):
         kind = EnergyMotion if test.motion else EnergyElement
-        found = follow(kind(material), test, test.steps(POINTS), start(material, test, stress))
+        found = follow(kind(material), test, test.steps(POINTS), replace(begun, history=np.zeros(0)))
         return columns(test, found), "derivative of the energy"
-    begun = begin(material, test, stress) if begun is None else begun
     known = EXACT.get(material.name)
     if known is None or (not isotropic(begun) and test.name not in TRIAXIAL_TESTS and material.name != "hypoelastic"):
         return None

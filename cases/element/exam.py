@@ -10,6 +10,7 @@ import numpy as np
 from mpm_verify.cases.element.drawn import drawn
 from mpm_verify.cases.element.following import Stopped
 from mpm_verify.cases.element.judged import checks
+from mpm_verify.cases.element.motion import UNIT
 from mpm_verify.cases.element.paths import PathSource
 from mpm_verify.cases.element.run import ElementRun
 from mpm_verify.cases.element.study import FINE, ROUND_OFF, ElementStudy
@@ -49,6 +50,7 @@ class ElementRemark(StrEnum):
     PATH_STOPPED = "element.path_stopped"
     PATH_STRESSES = "element.path_stresses"  # columns that control a stress
     PATH_MOTION = "element.path_motion"  # strains that are read as simple shear
+    PATH_DEFORMED = "element.path_deformed"  # a motion whose first F is not that of the undeformed state
     PLANE_YIELDS = "element.plane_yields"  # of a material that a strain of zz does not make yield
     PATH_ZERO = "element.path_zero"  # in every row, as in plane strain
     PATH_UNUSED = "element.path_unused"
@@ -72,6 +74,7 @@ def examination(
         *lead(material, studies, found),
         *(rate_idle(run.material) if still else []),
         *read(reads),
+        *deformed(material, studies),
         *path_ends(studies),
     ]
     remarks += [remark for one in studies for remark in notes(material, one)]
@@ -105,6 +108,17 @@ def read(sources: Sequence[PathSource]) -> list[Remark]:
             found.append(Remark(ElementRemark.PATH_ZERO, {"columns": zero}))
         if unused:
             found.append(Remark(ElementRemark.PATH_UNUSED, {"file": one.name, "columns": unused}))
+    return found
+
+
+def deformed(material: Any, studies: Sequence[ElementStudy]) -> list[Remark]:
+    """Remarks on motions that start deformed: their F, and what the stress is there."""
+    found = []
+    for one in studies:
+        if one.test.motion and (one.test.points[0] != UNIT).any():
+            F = dict(zip(("xx", "yy", "xy", "zz", "yx"), map(float, one.test.points[0]), strict=True))
+            whose = "energy" if material.energy is not None else "start"
+            found.append(Remark(ElementRemark.PATH_DEFORMED, {"path": one.test.title, "whose": whose, **F}))
     return found
 
 

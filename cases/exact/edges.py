@@ -22,9 +22,10 @@ from mpm_verify.cases.exact.body import (
 from mpm_verify.mms.constitutive.driver import random
 from mpm_verify.mms.constitutive.tested import Pairs, Part, Reason, Tested, attempt, bound, farthest, not_asked
 from mpm_verify.solver.layout import Layout
+from mpm_verify.solver.sides import SIDES
 from mpm_verify.solver.state import Floats, Particles
 from mpm_verify.solver.step import advance
-from mpm_verify.solver.surface import SIDES, Given, Kind, Surface, faces
+from mpm_verify.solver.surface import Given, Kind, Surface, faces
 
 STEPS = 4
 LATER = 3  # steps that have been done when sums are taken

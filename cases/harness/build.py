@@ -11,7 +11,7 @@ from typing import Any, cast, get_type_hints
 from pydantic import TypeAdapter, ValidationError
 
 from mpm_verify.cases.harness.contract import Case, case_named, invalid
-from mpm_verify.cases.harness.refinement import complete, refines
+from mpm_verify.cases.harness.refinement import complete, elsewhere, refines
 from mpm_verify.cases.harness.study import QuantityPlan, RunRecord, Study, head
 from mpm_verify.cases.judging.records import Expectation
 from mpm_verify.solver.plugins import create, is_file, label, meant
@@ -173,7 +173,7 @@ def _runs(asked: Asked) -> tuple[tuple[Any, ...], list[QuantityPlan[Any]]]:
     runs = tuple(dict.fromkeys(make(case, point) for point in points))
     smaller = [make(case, {**point, "courant": courant}) for courant in times for point in points]
     own_plugins(runs)
-    case.check((*runs, *smaller))
+    case.check((*runs, *smaller, *elsewhere(runs, asked.replicates)))
     if not (case.quantities and refines(case.Run)):
         return tuple(dict.fromkeys(case.companions(runs))), []
     plans = [plan for one in {head(run): run for run in reversed(runs)}.values() for plan in quantity_plans(case, one)]

@@ -100,8 +100,13 @@ def complete(
     asked = {plan.head for plan in plans if plan.judged and plan.expectation and plan.expectation.order is not None}
     halved = [replace(run, courant=run.courant / 2) for run in finest if head(run) in asked and not run.tied]
     timed = [replace(run, courant=courant) for run in finest for courant in sorted(set(times), reverse=True)]
-    shifted = [replace(run, offset=offset) for run in runs for offset in offsets(replicates)[1:]]
+    shifted = elsewhere(runs, replicates)
     return tuple(dict.fromkeys([*runs, *halved, *timed, *shifted]))
+
+
+def elsewhere(runs: Sequence[Run], replicates: int) -> list[Run]:
+    """Runs with the particles elsewhere in their cells, replicates - 1 of each."""
+    return [replace(run, offset=offset) for run in runs for offset in offsets(replicates)[1:]]
 
 
 def offsets(replicates: int) -> list[Offset]:

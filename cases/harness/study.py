@@ -97,6 +97,11 @@ class RunRecord:
         return False
 
     @property
+    def edge_noise(self) -> bool:
+        """Whether an edge is prescribed, and nothing damps the noise of particles that the grid does not see."""
+        return False
+
+    @property
     def digest(self) -> str:
         """Name of the Result: hash of the parameters and of all that computes the run, 16 hex digits."""
         return self.named()

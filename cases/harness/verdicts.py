@@ -135,6 +135,7 @@ def _measured(found: Finding, known: Mapping[Head, Series], results: Results, pe
         series.first.stiffness,
         _twin(series, known, results, cells, "smoothing", lambda run: run.stiffness),
         series.first.strays,
+        series.first.edge_noise,
     )
 
 

@@ -21,6 +21,7 @@ NAMED, PART = 0.5, 0.25  # fractions of the excess
 CLEAR = 100.0  # times the round-off floor, as in the order rule
 SPACING = 0.02  # gap between domains, in particle spacings, below which it is none
 FOLLOWS = 0.5  # the excess grows with the crossings: least power
+EDGE_NOISE = 0.75  # of the error, measured on 16 and 32 cells with and without: docs/own-solution.md
 STIFF = 20.0  # bulk over shear modulus from which locking is asked for: a Poisson's ratio of 0.476
 OUTGROWN = 0.25  # bulk over shear modulus, over the square of the cells, at which locking is half of the excess
 ALIKE = 0.25  # relative difference of crossings that are as many
@@ -46,6 +47,7 @@ class CauseCode(StrEnum):
     ROUND_OFF = "round_off"  # [times: the finest error over its floor]
     LOCKING = "locking"  # too many constraints on the volume [ratio, cells; change, with a smoothed volume ratio]
     OTHER_SOLID = "other_solid"  # than that of the problem, by the rate of the material [error, size of the motion]
+    EDGE_NOISE = "edge_noise"  # of particles beside a prescribed edge, which nothing damps [error]
     DAMPING = "damping"  # that the problem does not have [alpha; change, without it]
 
 
@@ -68,7 +70,8 @@ class Measured:
     failed. `damping` is the fraction of the force that damping takes which the problem does not have, `size` that of
     the exact quantity, and `undamped` the finest error without damping. `stiffness` is the bulk modulus over the shear
     modulus, 0 where it is not known or the volume ratio is smoothed, `relieved` the finest error where it is; `strays`
-    says whether the material is another solid than the one that the problem was made for.
+    says whether the material is another solid than the one that the problem was made for, `edge_noise` whether an edge
+    is prescribed where nothing damps the noise of particles.
     """
 
     cells: tuple[int, ...]
@@ -89,6 +92,7 @@ class Measured:
     stiffness: float = 0.0
     relieved: float | None = None
     strays: bool = False
+    edge_noise: bool = False
 
     @property
     def orders(self) -> list[float]:
@@ -157,6 +161,7 @@ def explain(m: Measured) -> Stall | None:
         return Stall(None, last, orders[-1] if orders else None, before, (end, *_crossings_alone(m)), m.ended)
     others = [_particles(m), _gaps(m), _time_step(m), _floor(m), *([_damping(m)] if m.damping else [])]
     others += [*([_locking(m)] if m.stiffness >= STIFF else []), *([_other_solid(m)] if m.strays else [])]
+    others += [Cause(CauseCode.EDGE_NOISE, Finding.PRESENT, EDGE_NOISE, {"error": m.errors[-1]})] * m.edge_noise
     causes = [_crossings(m, max(c.weight for c in others)), *others]
     rank = list(Finding)
     causes.sort(key=lambda c: (-(c.weight >= NAMED), rank.index(c.finding), -c.weight))
@@ -164,13 +169,13 @@ def explain(m: Measured) -> Stall | None:
 
 
 def stalls(m: Measured) -> bool:
-    """Whether the finest local order is too low and has fallen, or is that of locking, which grids have to outgrow."""
+    """Whether the finest local order is too low and has fallen, or is that of locking or of noise at an edge."""
     orders = m.orders
     if len(orders) < len(m.cells) - 1 or not orders:  # an error of zero
         return False
     fell = len(orders) > 1 and orders[-1] <= max(orders[:-1]) - DROP
     locks = m.stiffness >= STIFF and _locking(m).weight >= PART
-    return orders[-1] < m.order - m.below and (fell or locks or orders[-1] < FLAT)
+    return orders[-1] < m.order - m.below and (fell or locks or m.edge_noise or orders[-1] < FLAT)
 
 
 def _fraction(m: Measured, removed: float) -> float:
@@ -256,8 +261,12 @@ def _locking(m: Measured) -> Cause:
 
 
 def _other_solid(m: Measured) -> Cause:
-    """Material in rate form whose rate has no energy: what the errors converge to is the distance of two solids."""
-    return Cause(CauseCode.OTHER_SOLID, Finding.PRESENT, 1.0, {"error": m.errors[-1], "size": m.size})
+    """Material in rate form whose rate has no energy: what the errors converge to is the distance of two solids.
+
+    It is the same on every grid, so it explains of the finest error what is in the least one too, and no growth.
+    """
+    weight = min(m.errors) / m.errors[-1]
+    return Cause(CauseCode.OTHER_SOLID, Finding.PRESENT, weight, {"error": m.errors[-1], "size": m.size})
 
 
 def _crossings(m: Measured, explained: float) -> Cause:

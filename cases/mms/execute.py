@@ -34,6 +34,7 @@ from mpm_verify.solver.plugins import (
     SOLUTIONS,
     TRANSFERS,
     create,
+    optional,
 )
 from mpm_verify.solver.state import Floats, Grid, Particles
 from mpm_verify.solver.step import Model, Scheme, advance, check_time_step
@@ -91,7 +92,7 @@ def setup(run: Run) -> tuple[Model, Comparison, int]:
     lower, upper = grid_box(solution, dx)
     shift = -dx * np.array(run.offset) if moves_grid(solution) else np.zeros(2)
     grid = Grid(dx, lower + shift, upper + shift)
-    steps, dt = time_steps(solution, grid.dx, run.courant_number, whole=run.whole_steps)
+    steps, dt = time_steps(solution, grid.dx, run.courant_number, run.whole_steps, run.turns)
     lag = 0.5 * dt if run.staggered else 0.0
     F_lag = dt if run.staggered and run.stress == "usf" else 0.0
 
@@ -104,7 +105,9 @@ def setup(run: Run) -> tuple[Model, Comparison, int]:
     transfer, stress = create(TRANSFERS, run.transfer), run.stress
     scheme = Scheme(transfer, stress, run.staggered)
     held, edge = walls(solution, grid, basis.reference), surface(solution, exact, layout)
-    model = Model(grid, particles, basis, material, held, dt, scheme, damping_of(run), smoothing_of(run), edge)
+    model = Model(
+        grid, particles, basis, material, held, dt, scheme, damping_of(run), optional(SMOOTHINGS, run.smoothing), edge
+    )
     transfer.start(model, lambda X: velocity_gradient(exact, X, -lag, 1e-3 * dt, basis.reference))
     every = max(1, steps // LOOKS)
     packing = Packing(exact, layout, dx, every) if run.layout != "uniform" or len(layout) <= COUNTED else None
@@ -119,11 +122,6 @@ def damping_of(run: Run) -> "Damping | None":
     from mpm_verify.solver.damping import Damping
 
     return Damping(run.damping)
-
-
-def smoothing_of(run: Run) -> Any:
-    """Smoothing of the solver, None where there is none."""
-    return None if run.smoothing == "none" else create(SMOOTHINGS, run.smoothing)
 
 
 def laid_out(run: Run, solution: Any, exact: Manufactured) -> Layout:

@@ -6,6 +6,7 @@ from typing import Any, ClassVar, get_args
 
 from mpm_verify.cases.harness.study import ResultRecord, RunRecord, axis
 from mpm_verify.mms.blind_spots import BlindSpot
+from mpm_verify.mms.duration import quarters
 from mpm_verify.solver.plugins import (
     LAYOUTS,
     MATERIALS,
@@ -18,6 +19,7 @@ from mpm_verify.solver.plugins import (
     is_file,
     label,
     load,
+    optional,
     split,
 )
 from mpm_verify.solver.stress_update import Stress
@@ -156,6 +158,14 @@ class Run(RunRecord):
         return self.time_step == "printed"
 
     @property
+    def turns(self) -> int:
+        """Number that its steps are a multiple of: of quarters of a period with damping in the problem, else 1.
+
+        The body force jumps where the motion turns. With these steps that is half a step away from each v.
+        """
+        return quarters(create(SOLUTIONS, self.solution), self.periods) if self.damping_inside else 1
+
+    @property
     def damping_inside(self) -> float:
         """Damping that the problem has too."""
         return self.damping if self.manufacture == "damping" else 0.0
@@ -176,7 +186,7 @@ class Run(RunRecord):
     @property
     def smooths_volume(self) -> bool:
         """Whether the volume ratio, or its rate, is smoothed."""
-        smoothing = None if self.smoothing == "none" else create(SMOOTHINGS, self.smoothing)
+        smoothing = optional(SMOOTHINGS, self.smoothing)
         return bool(
             smoothing and smoothing.of != "stress" and (smoothing.volumetric or split(self.smoothing)[0] == "fbar")
         )
@@ -185,6 +195,16 @@ class Run(RunRecord):
     def strays(self) -> bool:
         """Whether the material has a rate that makes it another solid than the one of its energy."""
         return strays_on(self.shipped_material, self.solution)
+
+    @property
+    def edge_noise(self) -> bool:
+        """Whether FLIP keeps the noise beside a prescribed edge, which update-stress-last alone damps."""
+        if self.solver or self.stress == "usl" or split(self.transfer)[0] != "flip" or not is_file(self.solution):
+            return False
+        try:
+            return "prescribed" in create(SOLUTIONS, self.solution).boundary
+        except ValueError:  # its file may be gone when results are read
+            return False
 
     @property
     def shipped_material(self) -> Any:

@@ -19,11 +19,11 @@ from mpm_verify.mms.export.start import Start
 from mpm_verify.mms.manufacture import Manufactured, manufacture
 from mpm_verify.solver.layout import Layout, per_side
 from mpm_verify.solver.plugins import label, parameters_of
+from mpm_verify.solver.sides import SOLID_SIDES
 from mpm_verify.solver.state import Floats
 
 Columns = dict[str, Floats]  # (n,) each, by name
 BODIES = {1: "bar", 2: "rectangle", 3: "box"}
-SIDES = ("left", "right", "bottom", "top", "back", "front")  # lower and upper in x, in y, in z
 
 
 @dataclass(frozen=True)
@@ -157,7 +157,7 @@ def edges(solution: Any) -> dict[str, Any]:
     given = solution.boundary
     if hasattr(solution, "inner"):
         return {"inner": given, "outer": given}
-    sides = SIDES[: 2 * dimension(solution)]
+    sides = SOLID_SIDES[: 2 * dimension(solution)]
     kinds = [given] * len(sides) if isinstance(given, str) else list(given)
     kinds = ["prescribed" if kind == "moving" else kind for kind in kinds]
     return dict(zip(sides, kinds, strict=True))

@@ -100,7 +100,8 @@ def errors(record: Record, quantity: str, norm: str) -> Figure:
     """Figure of the error of every refinement against cell size, both axes logarithmic."""
     methods = list(dict.fromkeys(getattr(s.first, "method", "") for s in record.series))
     heads = {f.plan.head for f in record.findings if (f.plan.quantity, f.plan.norm) == (quantity, norm)}
-    drawn = [s for s in record.drawn if s.head in heads]
+    judged = [s for s in record.series if s.head in heads]
+    drawn = [s for s in record.drawn if s in judged] or judged
     with rc_context(style.RC):
         figure = Figure(figsize=style.PANEL, layout="constrained")
         axes = figure.subplots()

@@ -11,13 +11,13 @@ from mpm_verify.mms.blind_spots import (
     SEEN_BY_AXISYMMETRIC,
     SEEN_BY_LINE,
     SEEN_BY_SOLID,
-    SIDES,
     SMALL,
     BlindSpot,
     BlindSpotCode,
     Numbers,
 )
 from mpm_verify.reports.sentences.numbers import figure, percent
+from mpm_verify.solver.sides import SIDES
 
 MINUS = "\N{MINUS SIGN}"
 Words = Callable[[Numbers], str]

@@ -93,6 +93,10 @@ REMARKS: dict[str, Words] = {
         f"The strains of {n['file']} are read as a motion, F = [[1, gxy], [0, 1]] diag(exp exx, exp eyy), since a rate "
         "acts on what turns; --motion none keeps them in the material's own axes, where all rates are one."
     ),
+    Code.PATH_DEFORMED: lambda n: (
+        f"{n['path']} starts deformed, at Fxx {n['xx']:.5g}, Fxy {n['xy']:.5g}, Fyx {n['yx']:.5g}, Fyy {n['yy']:.5g}: "
+        f"the stress there is that of {'its energy' if n['whose'] == 'energy' else '--start, or of the first row'}."
+    ),
     Code.PLANE_YIELDS: lambda n: (
         "This material yields in the plane of xx and yy alone: the lateral strain of zz is elastic, and not that of xx."
     ),

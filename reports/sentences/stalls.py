@@ -15,6 +15,7 @@ NAMES = {
     CauseCode.DAMPING: "damping that the problem does not have",
     CauseCode.LOCKING: "volumetric locking",
     CauseCode.OTHER_SOLID: "another solid",
+    CauseCode.EDGE_NOISE: "noise beside a prescribed edge",
 }
 UNMEASURED = {
     CauseCode.QUADRATURE: "one particle count only; a list for --ppc adds others",
@@ -24,6 +25,7 @@ UNMEASURED = {
     CauseCode.DAMPING: "the run has none",
     CauseCode.LOCKING: "the material can be compressed",
     CauseCode.OTHER_SOLID: "the material is the one of the problem",
+    CauseCode.EDGE_NOISE: "no edge is prescribed, or the step damps it",
 }
 
 
@@ -131,9 +133,17 @@ def _other_solid(n: dict[str, float], peer: Peer | None) -> str:
     return f"{told}; the finest error is {words.percent(n['error'] / n['size'], 1)} of u" if n["size"] else told
 
 
+def _edge_noise(n: dict[str, float], peer: Peer | None) -> str:
+    return (
+        "FLIP keeps the part of the particles' velocities that the grid does not see, and the spring of the edge "
+        "feeds it; --stress usl damps it, and --transfer apic has none"
+    )
+
+
 MEASURED = {
     CauseCode.LOCKING: _locking,
     CauseCode.OTHER_SOLID: _other_solid,
+    CauseCode.EDGE_NOISE: _edge_noise,
     CauseCode.CROSSINGS: _crossings,
     CauseCode.QUADRATURE: _quadrature,
     CauseCode.GAPS: _gaps,

@@ -100,6 +100,11 @@ def made(
     if run.particles > MOST_PARTICLES:
         raise ValueError(f"{run.particles} particles are too many for a table; choose fewer cells or --ppc")
     check_solutions([run])
+    if run.strays:
+        raise ValueError(
+            f"{run.material} has a rate without an energy, and is another solid than the one whose motion is exact; "
+            "export --material hencky, which is that one"
+        )
     names, model = Names(run.solution, run.material), create(MATERIALS, run.material)
     return export(
         names,

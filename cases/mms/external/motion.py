@@ -9,6 +9,7 @@ from scipy.spatial import cKDTree
 from mpm_verify.cases.mms.external.balance import Balance, Tried
 from mpm_verify.cases.mms.external.evidence import Evidence
 from mpm_verify.cases.solvers.matching import NEAR
+from mpm_verify.solver.sides import SOLID_SIDES
 from mpm_verify.solver.state import Floats
 
 Bools = NDArray[np.bool_]
@@ -28,7 +29,6 @@ NEARLY = 0.25  # from 1, of a term that is there or not; from a half, of half a 
 TIE = 1.05  # factor within which two candidates leave the same of the balance
 SINGLE = 0.01  # of the error of u: rounding of single precision that is told
 ROUND = 1e-14  # of the body's width: an error that is none
-SIDES = (("left", "right"), ("bottom", "top"), ("back", "front"))
 MANY = 20  # numbers with more digits than a lattice has
 
 
@@ -117,7 +117,7 @@ def next_to_walls(e: Evidence) -> tuple[Bools, Indices]:
     """Whether a particle is in a cell next to a wall (P,), and the axis of the nearest wall's normal (P,)."""
     record = e.case.record
     depth = np.full((len(e.X), e.d), np.inf)
-    for axis, sides in enumerate(SIDES[: e.d]):
+    for axis, sides in enumerate([SOLID_SIDES[: 2 * e.d][at : at + 2] for at in range(0, 2 * e.d, 2)]):
         for side, end in zip(sides, (record.lower[axis], record.upper[axis]), strict=True):
             if record.edges.get(side) in ("fixed", "roller"):
                 depth[:, axis] = np.minimum(depth[:, axis], np.abs(e.X[:, axis] - end))
