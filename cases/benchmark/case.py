@@ -107,10 +107,11 @@ def expectation(run: Run, quantity: str, norm: str) -> Expectation | None:
 
 def examine(study: Study[Run], results: Mapping[str, Result], store: Store) -> BenchmarkAnalysis:
     """Hold the numbers of each refinement against what is known."""
+    names = list(dict.fromkeys(run.problem for run in study.runs))
     return BenchmarkAnalysis(
         tuple(
             one
-            for series in collect(study.runs)
+            for series in sorted(collect(study.runs), key=lambda series: names.index(series.first.problem))
             for held in series.first.stated.held(series.first)
             for one in checks(held, series, results)
         )

@@ -23,7 +23,7 @@ from mpm_verify.solver.state import Floats, Particles
 Pair = tuple[str, str]  # quantity and norm
 Errors = dict[str, dict[str, float]]
 CONSTANTS = ("E", "nu", "rho0")  # parameters of a problem that are its material's too
-FIGURE = "curves/"  # name of an array: curves/FIGURE/CURVE/x or y; the curve `exact` is the known answer
+FIGURE, EXACT = "curves/", "exact"  # array curves/FIGURE/CURVE (2,n), x and y; EXACT is the known answer
 
 
 @dataclass(frozen=True)
@@ -98,11 +98,12 @@ class Held:
 
 @dataclass(frozen=True)
 class Drawn:
-    """Figure: what is on its axes, with units, and what it shows."""
+    """Figure: what is on its axes, with units, and what it shows; curves are lines, or marks of single values."""
 
     x: str
     y: str
     caption: str
+    lines: bool = False
 
 
 @dataclass(frozen=True)
@@ -157,6 +158,10 @@ class Problem:
     def held(self, run: Run) -> tuple[Held, ...]:
         """Numbers that are held against what is known, of a refinement that `run` belongs to."""
         return ()
+
+    def answers(self, run: Run, X: Floats) -> dict[str, Floats]:
+        """Known columns (n,) of the end by name, at reference positions X (n,2), for other solvers."""
+        return {}
 
     def particles(self, run: Run) -> int:
         """Number of particles, about."""

@@ -10,4 +10,4 @@ def show(record: Record, page: Path | None) -> None:
     """Print verdicts and checks, as far as there are some."""
     if record.study.plans:
         table.show(record, None)
-    checks.show(record, page)
+    checks.show(record, page, titled=not record.study.plans)

@@ -44,6 +44,7 @@ from mpm_verify.solver.step import Model, Scheme, particles_to_grid
 
 FOLLOW = ("cpdi", "cpdi2", "cpgimp", "tlmpm")  # methods whose domains follow F
 TILE = ("cpdi", "cpdi2", "tlmpm")  # and tile the column as it deforms
+DEVIATIONS: dict[str, Expectation] = {}  # of the position
 RAMP, MOST = 2.0, 40.0  # slowest periods in which gravity rises, and after which a run ends though it is not at rest
 REST = 1e-10  # largest acceleration of a node at rest, over g
 SAMPLES = 33  # heights at which the fastest wave is looked for
@@ -121,7 +122,7 @@ class SelfWeight(Problem):
         name = split(run.method)[0]
         if quantity == "u" and name in FOLLOW:
             return Expectation(2.0, source="measured")
-        return None
+        return DEVIATIONS.get(name) if quantity == "u" else None
 
     def held(self, run: Run) -> tuple[Held, ...]:
         """Stretch at the base and height at rest, and the exact stress of cells."""
@@ -138,6 +139,11 @@ class SelfWeight(Problem):
         if name in TILE:
             found.append(Held("cell_stress", 1e-8 * weight, "at_most", "balance of each cell", of="each"))
         return tuple(found)
+
+    def answers(self, run: Run, X: Floats) -> dict[str, Floats]:
+        """Height at rest and vertical stress of particles."""
+        material = create(MATERIALS, run.material)
+        return {"y": self.rest(material, X[:, 1]), "syy": self.stress(material, X[:, 1])}
 
     def rest(self, material: Any, Y: Floats) -> Floats:
         """Heights at rest (n,) of particles at Y (n,) at reference, by Gauss's rule."""
