@@ -13,8 +13,8 @@ from mpm_verify.solver.plugins import METHODS
 
 Sets = Literal["full", "quick"]
 ORDERS, EXACT = ("axis_aligned", "clamped_shear"), ("exact",)
-JUDGES = ("norms", "rule", "store", "numbers")
-OTHERS = (*JUDGES, "derivation", "wave_bar", "benchmark", "column", "smoothing", "objectivity", "material")
+JUDGES = ("norms", "rule", "store", "numbers", "benchmark")
+OTHERS = (*JUDGES, "derivation", "wave_bar", "column", "smoothing", "objectivity", "material")
 CHECKS = {"full": (*ORDERS, *EXACT, *OTHERS), "quick": (*ORDERS, *EXACT, "rule", "norms")}
 USUAL = "cpdi"
 EACH = 7  # of the defects in a quick campaign
