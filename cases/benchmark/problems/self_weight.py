@@ -9,8 +9,8 @@ change, so that the Cauchy stress is the nominal one,
 With an energy W the stretch l(Y) solves dW/dl = sigma_yy, and a particle comes to rest at the integral of l from 0 to
 Y. With nu = 0 and q = rho0 g H / E it is closed:
 
-    Hencky        ln(l) / l = -q         l = W(q) / q,                 height  H (W(q) + W(q)^2 / 2) / q
-    neo-Hookean   (l - 1/l) / 2 = -q     l = sqrt(q^2 + 1) - q,        height  the integral of that
+    Hencky: ln(l) / l = -q, so l = W(q) / q at the base, and the height is H (W(q) + W(q)^2 / 2) / q
+    neo-Hookean: (l - 1/l) / 2 = -q, so l = sqrt(q^2 + 1) - q, and the height is H times its mean from 0 to q
 
 with W the function of Lambert: base stretch 0.30370 and height 24.233 m, or 0.12542 and 16.362 m.
 
@@ -70,7 +70,7 @@ class SelfWeight(Problem):
     quick: ClassVar[tuple[int, ...]] = (8, 12, 16, 24)
     methods: ClassVar[tuple[str, ...]] = ("cpdi", "tlmpm")
     figures: ClassVar[dict[str, Drawn]] = {
-        "stress": Drawn("vertical stress [Pa]", "height at rest [m]", "stress of each particle, and the exact one"),
+        "stress": Drawn("vertical stress [kPa]", "height at rest [m]", "stress of each particle, and the exact one"),
         "cells": Drawn("height at rest [m]", "stress less the exact one [Pa]", "what particles and cells miss by"),
     }
 
@@ -180,6 +180,8 @@ class AtRest(Watch):
         u = p.x[:, 1] - problem.rest(material, rows)[where]
         own = p.sigma[:, 1] - exact
         heights, cells = cell_stress(model, own)
+        if model.basis.reference:  # cells are those of the reference configuration
+            heights = problem.rest(material, heights)
         F = np.array([p.F[where == row, 1, 1].mean() for row in range(len(rows))])
         low, next_ = (F[k * self.side : (k + 1) * self.side].mean() for k in range(2))  # of two layers, a cell high
         weight = material.rho0 * problem.g * problem.H
@@ -192,8 +194,8 @@ class AtRest(Watch):
         }
         fine = np.linspace(0.0, problem.H, 101)
         curves = {
-            ("stress", "run"): np.stack([p.sigma[:, 1], p.x[:, 1]]),
-            ("stress", "exact"): np.stack([problem.stress(material, fine), problem.rest(material, fine)]),
+            ("stress", "run"): np.stack([p.sigma[:, 1] / 1e3, p.x[:, 1]]),
+            ("stress", "exact"): np.stack([problem.stress(material, fine) / 1e3, problem.rest(material, fine)]),
             ("cells", "particles"): np.stack([p.x[:, 1], own]),
             ("cells", "cells"): np.stack([heights, cells]),
         }
