@@ -6,10 +6,11 @@ from typing import Any, Final
 import numpy as np
 
 from mpm_verify.cases.benchmark.run import Run
-from mpm_verify.mms.export.case import SIDES, Columns, constants, named, numbers, positions
+from mpm_verify.mms.export.case import Columns, constants, named, numbers, positions
 from mpm_verify.mms.export.record import MaterialRecord
 from mpm_verify.solver.model import Model
 from mpm_verify.solver.plugins import label, parameters_of
+from mpm_verify.solver.sides import SIDES
 
 FORMAT: Final = "mpm-verify-benchmark-1"
 EXPORTED = "cpdi"  # method whose domains are told: half side vectors at reference
@@ -140,7 +141,7 @@ def edges(model: Model) -> dict[str, str]:
     """Kind of each side of the grid, by what its nodes are held to, those of the corners left out where others are."""
     grid, held, found = model.grid, model.walls.held, {}
     slack = 1e-9 * grid.dx
-    for number, side in enumerate(SIDES[:4]):
+    for number, side in enumerate(SIDES):
         axis, end = number // 2, (grid.lower, grid.upper)[number % 2]
         on = np.abs(grid.nodes[:, axis] - end[axis]) < slack
         across = grid.nodes[:, 1 - axis]
