@@ -24,6 +24,7 @@ METHODS, MATERIALS, SOLUTIONS, CASES = (
     "mpm_verify.cases",
 )
 LAYOUTS = "mpm_verify.mms.layouts"
+PROBLEMS = "mpm_verify.cases.benchmark.problems"
 TRANSFERS = "mpm_verify.solver.transfers"
 RATES, NEGATIVE_CONTROLS = "mpm_verify.solver.rates", "mpm_verify.solver.negative_controls"
 SMOOTHINGS = "mpm_verify.solver.smoothing"
@@ -37,6 +38,7 @@ KINDS = {
     RATES: "rate",
     NEGATIVE_CONTROLS: "negative control",
     SMOOTHINGS: "smoothing",
+    PROBLEMS: "problem",
 }
 USUAL_RATE = "green_naghdi"  # objective rate of a material in rate form that names none
 FILE = r"(.+?\.py)(?::(\w+=.*|[^/\\]*))?"  # a path and parameters
@@ -49,6 +51,7 @@ CONTRACTS = {  # what the class of a kind has at least
     RATES: ("unrotate", "rotate", "order"),
     NEGATIVE_CONTROLS: ("unrotate", "rotate", "order"),
     SMOOTHINGS: ("of", "where", "stress", "strain", "check"),
+    PROBLEMS: ("material", "cells", "setup", "held"),
 }
 
 

@@ -17,7 +17,7 @@ NEEDED = {"sweep": ["figure3"], "material": ["linear_elastic"], "audit": ["bar"]
           "diff": ["study", "other"], "export": ["bump", "--to", "case", "--cells", "4"],
           "check-force": ["study"], "compare": ["--solver", "./study {case} {out}"],
           "judge": [str(TOP / "docs" / "examples" / "errors.csv")]}  # fmt: skip
-QUICK = {"methods": ["--quick"], "mms": ["--quick"], "wave_bar": ["--quick"]}
+QUICK = {"methods": ["--quick"], "mms": ["--quick"], "wave_bar": ["--quick"], "benchmark": ["cell_crossing"]}
 Spoken = tuple[int, str, str]
 Call = Callable[..., Spoken]
 

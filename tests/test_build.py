@@ -61,6 +61,12 @@ SAMPLES: dict[str, dict[str, str]] = {  # of each case two values of each field,
         "columns": MAP.replace("{", "{{").replace("}", "}}"), "precision": "double,single", "flip": "yes,no",
         "time_limit": "60,120", "memory_limit": "0,1000",
     },
+    "benchmark": {
+        "problem": "colliding_bars,cell_crossing", "method": "cpdi,gimp",
+        "material": "linear_elastic:E=1,nu=0,neo_hookean:E=1,nu=0", "cells": "16,32", "ppc": "4,9",
+        "courant": "0.4,0.2", "transfer": "flip,apic", "smoothing": "none,volumetric", "offset": "0.25,-0.125",
+        "control": "no,yes",
+    },
     "detect": {"defect": "none,cpdi-corner-weights", "method": "cpdi,mpm", "checks": "full,quick"},
     "objectivity": {
         "L": "1,2", "E": "5e5,1e6", "nu": "0.3,0.25", "rho0": "2650,2000", "g": "10,9.81", "cells": "8,4",
@@ -82,6 +88,7 @@ WITH: dict[tuple[str, str], dict[str, str]] = {  # what else has to be asked for
 }
 UNNAMED = ("order", "time_limit", "memory_limit")  # fields that say nothing of the numbers
 COARSE = {"mms": {"cells": "8,16", "ppc": "4"}, "wave_bar": {"cells": "8,16"}, "column": {"cells": "4", "ppc": "4"}}
+COARSE["benchmark"] = {"problem": "colliding_bars", "method": "cpdi", "cells": "16"}
 COARSE["exact"] = {"method": "cpdi", "material": "neo_hookean"}
 COMPUTED = [case for case in available(CASES) if not case_named(case).Run.given]  # numbers of a table have no axes
 EVERY = [(case, item.name) for case in COMPUTED for item in fields(case_named(case).Run)]
@@ -285,7 +292,7 @@ def test_another_value_is_another_folder(case: str, field: str, here: str) -> No
         ),
         ("mms", {"offset": ((2.0, 2.0),)}, "offset = (2.0, 2.0) shifts particles by fractions of their spacing"),
         ("detect", {"method": ("nope",)}, "no method 'nope'; choose from bspline2"),
-        ("beam", {}, "no case 'beam'; choose from any_code, column, detect, element, exact, mms"),
+        ("beam", {}, "no case 'beam'; choose from any_code, benchmark, column, detect, element, exact, mms"),
         ("mms", {"cells": (8, 1)}, "cells = 1 cannot be run; choose whole numbers from 2 to 4096"),
         ("mms", {"cells": ("8",)}, "cells = '8': input should be a valid integer"),
         ("mms", {"cells": (True,)}, "cells = True: input should be a valid integer"),

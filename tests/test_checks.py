@@ -361,6 +361,6 @@ def test_report_of_a_folder_that_cannot_be_drawn(
     for code, out, err in said.values():
         assert (code, out, err.count("\n")) == (2, "", 1)
         assert err.startswith("verify: ")
-    assert "is of the case tea, and this version has any_code, column, detect, element" in said["tea"][2]
+    assert "is of the case tea, and this version has any_code, benchmark, column, detect, element" in said["tea"][2]
     assert "run its study to the end" in said["empty"][2]
     assert "left as it is" in said["broken"][2]

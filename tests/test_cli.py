@@ -285,6 +285,7 @@ def test_list_names_every_plugin(verify: Verify) -> None:
         "mpm_verify.solver.transfers",
         "mpm_verify.solver.smoothing",
         "mpm_verify.mms.layouts",
+        "mpm_verify.cases.benchmark.problems",
         "mpm_verify.solver.rates",
         "mpm_verify.solver.negative_controls",
     )

@@ -24,9 +24,11 @@ from mpm_verify.solver.plugins import (
     LAYOUTS,
     MATERIALS,
     METHODS,
+    PROBLEMS,
     SMOOTHINGS,
     SOLUTIONS,
     TRANSFERS,
+    available,
     create,
     is_file,
 )
@@ -38,7 +40,7 @@ DOCS = TOP / "docs"
 DOCUMENTS = [TOP / "README.md", TOP / "ARCHITECTURE.md", *sorted(DOCS.glob("*.md"))]
 PLUGINS = {
     "method": METHODS, "solution": SOLUTIONS, "material": MATERIALS, "transfer": TRANSFERS, "smoothing": SMOOTHINGS,
-    "layout": LAYOUTS, "name": MATERIALS,
+    "layout": LAYOUTS, "name": MATERIALS, "problems": PROBLEMS,
 }  # fmt: skip
 FENCED = re.compile(r"^```(\w*)\n(.*?)^```", re.DOTALL | re.MULTILINE)
 each = pytest.mark.parametrize("file", DOCUMENTS, ids=lambda file: file.name)
@@ -208,7 +210,8 @@ def check(words: list[str]) -> None:
         for text in [texts] if isinstance(texts, str) else texts:
             for one in split(text):
                 if not (is_file(one) or one.isupper() or ".py" in one):
-                    create(package, one)
+                    benchmark = words[0] == "export" and one.partition(":")[0] in available(PROBLEMS)
+                    create(PROBLEMS if benchmark else package, one)
     if words[0] == "sweep":
         assert given["study"] in shipped() or given["study"].endswith(".toml")
 

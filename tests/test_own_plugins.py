@@ -90,7 +90,8 @@ def test_parameters_and_paths(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
         create(SOLUTIONS, "own.py:B=1")
     with pytest.raises(
         ValueError,
-        match=r"^no case 'own.py'; choose from any_code, column, detect, element, exact, mms, objectivity, wave_bar$",
+        match=r"^no case 'own.py'; choose from any_code, benchmark, column, detect, element, exact, mms, objectivity, "
+        r"wave_bar$",
     ):
         load(CASES, "own.py")
 

@@ -115,7 +115,7 @@ def test_which_cases_refine() -> None:
     from mpm_verify.solver.plugins import CASES, available
 
     found = {name for name in available(CASES) if refines(case_named(name).Run)}
-    assert found == {"mms", "column", "wave_bar", "any_code"}
+    assert found == {"mms", "column", "wave_bar", "any_code", "benchmark"}
 
 
 # ---- judged apart

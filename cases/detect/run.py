@@ -13,7 +13,7 @@ from mpm_verify.solver.plugins import METHODS
 
 Sets = Literal["full", "quick"]
 ORDERS, EXACT = ("axis_aligned", "clamped_shear"), ("exact",)
-JUDGES = ("norms", "rule", "store", "numbers")
+JUDGES = ("norms", "rule", "store", "numbers", "benchmark")
 OTHERS = (*JUDGES, "derivation", "wave_bar", "column", "smoothing", "objectivity", "material")
 CHECKS = {"full": (*ORDERS, *EXACT, *OTHERS), "quick": (*ORDERS, *EXACT, "rule", "norms")}
 USUAL = "cpdi"

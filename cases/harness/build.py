@@ -193,12 +193,11 @@ def own_plugins(runs: Sequence[RunRecord]) -> None:
 def quantity_plans(case: Case, run: RunRecord) -> list[QuantityPlan[Any]]:
     """Plans of a refinement: every quantity in every norm, judged where an expectation is registered."""
     found, multiple = [], case.multiple(run)
-    for quantity in case.quantities:
-        for norm in case.norms:
-            expectation = _registered(case, case.expectation(run, quantity, norm))
-            judged = expectation is not None and (quantity, norm) in case.judged
-            refutes = expectation is not None and expectation.order is not None and (quantity, norm) in case.refutes
-            found.append(QuantityPlan(run, quantity, norm, judged, expectation, multiple, refutes))
+    for quantity, norm in case.measures(run):
+        expectation = _registered(case, case.expectation(run, quantity, norm))
+        judged = expectation is not None and (case.judged is None or (quantity, norm) in case.judged)
+        refutes = expectation is not None and expectation.order is not None and (quantity, norm) in case.refutes
+        found.append(QuantityPlan(run, quantity, norm, judged, expectation, multiple, refutes))
     return found
 
 

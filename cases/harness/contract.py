@@ -12,7 +12,7 @@ and, where they apply, instead of the defaults of Case:
     QUANTITIES, NORMS, JUDGED, expectation      what the order rule is asked, see cases/harness/build.py; the Run then
                                                 has the fields REFINES
     canonical        (values) -> values: one name for one thing
-    parts, companions, multiple                 see Case
+    parts, companions, multiple, measures       see Case
     check            (runs): raises ValueError with one line for what cannot be run
     examine          (study, results, store) -> Analysis: checks of what is stored
 """
@@ -38,6 +38,7 @@ GIVES: Mapping[str, tuple[Callable[[Any], bool], str]] = {  # what a function of
     "title": (lambda found: isinstance(found, str) and found != "", "a text"),
     "expectation": (lambda found: found is None or isinstance(found, Expectation), "an Expectation or None"),
     "multiple": (lambda found: isinstance(found, int) and found > 0, "a whole number above zero"),
+    "measures": (lambda found: _listed(found, tuple), "pairs of quantity and norm in a list"),
     "parts": (
         lambda found: _listed(found) and all(hasattr(one, "contract") for one in found),
         "Asked in a list",
@@ -95,8 +96,8 @@ class Case:
         return getattr(self.module, "NORMS", ())
 
     @property
-    def judged(self) -> tuple[tuple[str, str], ...]:
-        """Quantities and norms that are judged where something is expected of them."""
+    def judged(self) -> tuple[tuple[str, str], ...] | None:
+        """Quantities and norms that are judged where something is expected of them; None: all."""
         return getattr(self.module, "JUDGED", ())
 
     @property
@@ -108,6 +109,12 @@ class Case:
     def expectation(self) -> Callable[[RunRecord, str, str], Expectation | None]:
         """Function (run, quantity, norm) -> registered expectation of the refinement of the run, or None."""
         return getattr(self.module, "expectation", lambda run, quantity, norm: None)
+
+    @property
+    def measures(self) -> Callable[[Any], Sequence[tuple[str, str]]]:
+        """Function (run) -> quantity and norm of each of its errors; usual are all of QUANTITIES in all of NORMS."""
+        usual = tuple((quantity, norm) for quantity in self.quantities for norm in self.norms)
+        return getattr(self.module, "measures", lambda run: usual)
 
     @property
     def multiple(self) -> Callable[[RunRecord], int]:

@@ -96,13 +96,16 @@ class CaseRecord:
     axisymmetric: bool = False
 
 
-def content(record: CaseRecord) -> dict[str, Any]:
+def content(record: Any) -> dict[str, Any]:
     """Record as case.json has it: without layers where there is no slice, or axisymmetry where there is none."""
     return {name: value for name, value in asdict(record).items() if name not in ("layers", "axisymmetric") or value}
 
 
-def flat(record: CaseRecord) -> list[tuple[str, str]]:
-    """Names and values, one word each, of all that a solver needs: components and frames get names of their own."""
+def flat(record: Any) -> list[tuple[str, str]]:
+    """Names and values, one word each, of all that a solver needs: components and frames get names of their own.
+
+    `record` is a dataclass: of a case, or of a benchmark.
+    """
     found: list[tuple[str, str]] = []
 
     def add(name: str, value: Any) -> None:

@@ -21,23 +21,36 @@ from mpm_verify.reports.sentences.headline import badge, headline
 from mpm_verify.reports.tables import plain
 
 
-def page(record: Record, vtk: bool = False, more: Sequence[Section] = (), last: Section | None = None) -> Path:
-    """Write the page of a study, its figures and tables; its path. `more` sections come before the runs, or `last`.
+def page(
+    record: Record, vtk: bool = False, more: Sequence[Section] = (), last: Section | None = None,
+    first: Sequence[Section] = (),
+) -> Path:  # fmt: skip
+    """Write the page of a study, its figures and tables; its path.
+
+    Sections `first` stand before the verdicts, `more` before the runs, or `last` in place of these.
 
     Raises StoreError.
     """
     study, found = record.study, record.analysis
-    first = next(iter(record.results.values()), None)
+    one = next(iter(record.results.values()), None)
     examination = Examination(
-        study.name, study.title, study.command, (), found.checks, dict(first.parameters) if first else {}, {},
-        first.environment if first else {},
+        study.name, study.title, study.command, (), found.checks, dict(one.parameters) if one else {}, {},
+        one.environment if one else {},
     )  # fmt: skip
     made = render(
-        record.store.folder, examination, lambda _, add: [*sections(record, add), *more, last or runs(record)],
-        outcome=str(found.outcome), said=" ".join([headline(record), summary(record)]).strip() if study.plans else "",
+        record.store.folder, examination, lambda _, add: [*first, *sections(record, add), *more, last or runs(record)],
+        outcome=str(found.outcome), said=said(record),
     )  # fmt: skip
     plain.write(record, record.store.folder / "tables")
     return made
+
+
+def said(record: Record) -> str:
+    """Lead: what the order rule says where it is asked, and how many checks pass."""
+    checks = record.analysis.checks
+    judged = [headline(record), summary(record)] if record.study.plans else []
+    passed = sum(check.outcome == "PASS" for check in checks)
+    return " ".join(filter(None, [*judged, f"{passed} of {len(checks)} checks pass." if checks else ""]))
 
 
 def sections(record: Record, add: Add) -> list[Section]:

@@ -1,4 +1,7 @@
-"""`verify export SOLUTION`: a case folder for a solver of your own: particles, body force in nine languages, values."""
+"""`verify export SOLUTION`: a case folder for a solver of your own: particles, body force in nine languages, values.
+
+Of a benchmark, `verify export self_weight`, it has particles and known answers.
+"""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -6,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from mpm_verify.cases.mms.run import PRECISIONS
-from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS
+from mpm_verify.solver.plugins import MATERIALS, PROBLEMS, SOLUTIONS, available, split
 from mpm_verify.verify.choices import choices, completing, completion
 from mpm_verify.verify.terminal.output import printing
 
@@ -21,7 +24,8 @@ def export(
         str,
         typer.Argument(
             metavar="SOLUTION",
-            help=f"{choices(SOLUTIONS)}, with parameters as axis_aligned:A=0.01, or a file: path/to/own.py.",
+            help=f"{choices(SOLUTIONS)}, with parameters as axis_aligned:A=0.01, or a file: path/to/own.py; or a "
+            f"benchmark: {choices(PROBLEMS)}.",
             autocompletion=completion(SOLUTIONS),
         ),
     ],
@@ -62,6 +66,9 @@ def export(
     """Write a folder with all that another solver needs to be verified with a manufactured solution."""
     from mpm_verify.verify.run import check_count, usage
 
+    if split(solution)[0] in available(PROBLEMS):
+        benchmark(solution, to, material, cells, ppc, courant, others=(frames, precision, dim) != (16, "double", None))
+        return
     with usage():
         from mpm_verify.reports.export.case_folder import usable, write
 
@@ -72,6 +79,25 @@ def export(
     with printing():
         typer.echo(f"{to}: {len(written)} files, {case.record.particles} particles, {case.record.steps} steps")
         typer.echo(f"read {to / 'README.md'}; check the sources with: verify check-force {to}")
+
+
+def benchmark(
+    problem: str, to: Path, material: str | None, cells: int, ppc: int | None, courant: float, others: bool
+) -> None:
+    """Write the folder of a benchmark; `others`: whether options are given that it does not have."""
+    from mpm_verify.verify.run import usage
+
+    with usage():
+        from mpm_verify.cases.benchmark.exported import exported
+        from mpm_verify.reports.export.benchmark_folder import write
+        from mpm_verify.solver.plugins import create
+
+        if others:
+            raise ValueError(f"{problem} has neither frames, precision nor dim; leave these options out")
+        case = exported(problem, material, cells, ppc, courant)
+        written = write(to, case, create(PROBLEMS, problem))
+    with printing():
+        typer.echo(f"{to}: {len(written)} files, {case.record.particles} particles; read {to / 'README.md'}")
 
 
 def made(

@@ -12,6 +12,7 @@ from mpm_verify.solver.plugins import (
     MATERIALS,
     METHODS,
     NEGATIVE_CONTROLS,
+    PROBLEMS,
     RATES,
     SMOOTHINGS,
     SOLUTIONS,
@@ -21,8 +22,12 @@ from mpm_verify.solver.plugins import (
 )
 from mpm_verify.verify.terminal.output import printing
 
-PACKAGES = (CASES, METHODS, TRANSFERS, SMOOTHINGS, LAYOUTS, SOLUTIONS, MATERIALS, RATES, NEGATIVE_CONTROLS)
-REMARKS = {RATES: " (of the materials in rate form)", NEGATIVE_CONTROLS: " (negative controls, taken as a rate)"}
+PACKAGES = (CASES, METHODS, TRANSFERS, SMOOTHINGS, LAYOUTS, SOLUTIONS, PROBLEMS, MATERIALS, RATES, NEGATIVE_CONTROLS)
+REMARKS = {
+    PROBLEMS: " (of verify benchmark)",
+    RATES: " (of the materials in rate form)",
+    NEGATIVE_CONTROLS: " (negative controls, taken as a rate)",
+}
 
 
 def list_plugins() -> None:

@@ -37,6 +37,11 @@ VARIANTS = (
 )  # cut-off, apex, void
 PATHS = ("oedometric", "biaxial", "shear_volume", "properties")
 TRIAXIAL = ("triaxial_compression", "triaxial_extension")  # of soils in rate form
+COARSE: Mapping[str, tuple[tuple[int, ...], tuple[int, ...]]] = {  # cells and particles per cell, by problem
+    "self_weight": ((8, 12, 16), (4,)),
+    "colliding_bars": ((8, 16, 32), (4,)),
+    "cell_crossing": ((20,), (1, 4)),
+}
 SMALL: Mapping[str, tuple[Any, ...]] = {
     "cells": (3,),
     "ppc": (4,),
@@ -152,6 +157,26 @@ def wave(subject: Subject) -> Answer:
     return judged(subject, "wave_bar", Asked("wave_bar", {"method": (subject.method,)}, 1, True))
 
 
+def benchmark(subject: Subject) -> Answer:
+    """Numbers of problems with a known answer on three coarse grids; orders are not asked."""
+    asked = [Asked("benchmark", {"problem": (name,), "method": (subject.method,), "cells": cells, "ppc": ppc})
+             for name, (cells, ppc) in COARSE.items() if may(name, subject.method, cells)]  # fmt: skip
+    _, _, found = study(subject, "benchmark", *asked)
+    wrong = [check for check in found.checks if check.outcome is not Outcome.PASS]
+    return (str(wrong[0].outcome), f"{wrong[0].group}: {wrong[0].name}") if wrong else (PASS, "")
+
+
+def may(problem: str, method: str, cells: tuple[int, ...]) -> bool:
+    """Whether something is known of a problem with a method."""
+    case = case_named("benchmark")
+    run = make(case, {"problem": problem, "method": method, "cells": cells[0]})
+    try:
+        case.check([run])
+    except ValueError:
+        return False
+    return bool(run.stated.held(run))  # type: ignore[attr-defined]
+
+
 CHECKS: Mapping[str, Callable[[Subject], Answer]] = {
     "axis_aligned": manufactured("axis_aligned"),
     "clamped_shear": manufactured("clamped_shear"),
@@ -160,6 +185,7 @@ CHECKS: Mapping[str, Callable[[Subject], Answer]] = {
     "material": material,
     "objectivity": objectivity,
     "wave_bar": wave,
+    "benchmark": benchmark,
     "column": column("column", damping=(0.05,)),
     "smoothing": column("smoothing", smoothing=("full",), damping=(0.05,), damping_kind=("objective",)),
     "norms": lambda s: known.norms(),

@@ -10,8 +10,11 @@ from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences import failures
 
 
-def show(record: Record, page: Path | None, lead: str = "") -> None:
-    """Print each part with how many of its checks pass, those that do not with their numbers, and the page's path."""
+def show(record: Record, page: Path | None, lead: str = "", titled: bool = True) -> None:
+    """Print each part with how many of its checks pass, those that do not with their numbers, and the page's path.
+
+    The title of the study stands before, if it is `titled`.
+    """
     every = record.analysis.checks
     from rich.table import Table
     from rich.text import Text
@@ -21,7 +24,7 @@ def show(record: Record, page: Path | None, lead: str = "") -> None:
     out = Listened(highlight=False, soft_wrap=False)
     if not out.is_terminal:
         out.width = max(out.width, 100)
-    out.print(Text(f"\n{record.study.title}", "bold"))
+    out.print(Text(f"\n{record.study.title}" if titled else "", "bold"))
     table = Table(box=None, pad_edge=False, header_style="dim")
     for name in ("", "part", "checks", "pass", "closest to its bound"):
         table.add_column(name, justify="right" if name in ("checks", "pass") else "left")

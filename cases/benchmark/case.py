@@ -1,0 +1,147 @@
+"""Benchmarks: problems with a known answer, each a file of cases/benchmark/problems.
+
+Errors are judged by their order on refinement, numbers against closed forms, by the Richardson limit where a grid
+misses them, and invariants to round-off. The contract of a problem is told in cases/benchmark/problem.py, that of a
+case in cases/harness/contract.py.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import nan
+from typing import Any
+
+from mpm_verify.cases.benchmark.problem import Held
+from mpm_verify.cases.benchmark.run import Result, Run
+from mpm_verify.cases.harness.build import Asked
+from mpm_verify.cases.harness.checks import Check
+from mpm_verify.cases.harness.refinement import Series, collect
+from mpm_verify.cases.harness.store import Store
+from mpm_verify.cases.harness.study import Study
+from mpm_verify.cases.judging.records import Expectation
+from mpm_verify.cases.judging.richardson import extrapolate
+from mpm_verify.solver.plugins import (
+    MATERIALS,
+    METHODS,
+    PROBLEMS,
+    SMOOTHINGS,
+    TRANSFERS,
+    available,
+    create,
+    label,
+    parameters_of,
+    split,
+)
+from mpm_verify.solver.plugins import canonical as canonical_name
+
+__all__ = ["Result", "Run"]
+
+QUANTITIES, NORMS, JUDGED = ("u", "sigma"), ("rms",), None  # each problem has others, see `measures`
+LEVELS = 3  # of a Richardson extrapolation
+
+
+@dataclass(frozen=True)
+class BenchmarkAnalysis:
+    """Numbers of all problems, each beside what it is held against."""
+
+    checks: tuple[Check, ...]
+
+
+def title(runs: Sequence[Run]) -> str:
+    """Title of a study, such as `Benchmarks: self_weight`."""
+    names = dict.fromkeys(label(run.problem) for run in runs)
+    return f"Benchmarks: {', '.join(names)}" + ", failing control" * all(run.control for run in runs)
+
+
+def parts(asked: Asked) -> list[Asked]:
+    """One for each problem, with its usual methods, cells and particles per cell."""
+    found = []
+    for name in asked.values.get("problem", available(PROBLEMS)):
+        problem = create(PROBLEMS, name)
+        usual = {
+            "method": problem.methods,
+            "cells": problem.quick if asked.quick else problem.cells,
+            "ppc": (problem.ppc,),
+        }
+        found.append(replace(asked, values={**usual, **asked.values, "problem": (name,)}))
+    return found
+
+
+def canonical(values: dict[str, Any]) -> dict[str, Any]:
+    """Specifications with only the parameters that differ from their defaults, and the problem's own material."""
+    values["problem"] = canonical_name(PROBLEMS, values.get("problem", Run.problem))
+    problem = create(PROBLEMS, values["problem"])
+    values["material"] = completed(values.get("material") or problem.material, problem.constants)
+    for key, package in {"method": METHODS, "transfer": TRANSFERS}.items():
+        values[key] = canonical_name(package, values.get(key, getattr(Run, key)))
+    smoothing = values.get("smoothing", Run.smoothing)
+    values["smoothing"] = smoothing if smoothing == "none" else canonical_name(SMOOTHINGS, smoothing)
+    return values
+
+
+def completed(material: str, constants: Mapping[str, float]) -> str:
+    """Material with the constants of the problem, but for those that it is given itself."""
+    name, rest = split(material)
+    given = [item.partition("=")[0] for item in rest.split(",")]
+    takes = parameters_of(create(MATERIALS, material))
+    more = [f"{key}={value!r}" for key, value in constants.items() if key in takes and key not in given]
+    return canonical_name(MATERIALS, ":".join(filter(None, [name, ",".join(filter(None, [rest, *more]))])))
+
+
+def check(runs: Sequence[Run]) -> None:
+    """Raise ValueError with one line for what a problem cannot have."""
+    for run in runs:
+        run.stated.check(run)
+
+
+def measures(run: Run) -> tuple[tuple[str, str], ...]:
+    """Quantity and norm of each error of the problem."""
+    found: tuple[tuple[str, str], ...] = run.stated.measures(run)
+    return found
+
+
+def expectation(run: Run, quantity: str, norm: str) -> Expectation | None:
+    """Expectation that the problem states; a failing control has that of what it spoils."""
+    found: Expectation | None = run.stated.expectation(run, quantity, norm)
+    return found
+
+
+def examine(study: Study[Run], results: Mapping[str, Result], store: Store) -> BenchmarkAnalysis:
+    """Hold the numbers of each refinement against what is known."""
+    names = list(dict.fromkeys(run.problem for run in study.runs))
+    return BenchmarkAnalysis(
+        tuple(
+            one
+            for series in sorted(collect(study.runs), key=lambda series: names.index(series.first.problem))
+            for held in series.first.stated.held(series.first)
+            for one in checks(held, series, results)
+        )
+    )
+
+
+def checks(held: Held, series: Series, results: Mapping[str, Result]) -> list[Check]:
+    """Checks of one number of a refinement."""
+    first = series.first
+    group = f"{label(first.problem)}, {label(first.method)}" + ", failing control" * first.control
+    done = [(run, results[run.digest]) for run in series.runs if run.digest in results]
+
+    def made(name: str, found: float, result: Result | None = None) -> Check:
+        failure = result.failure if result else None
+        return Check(group, name, found, held.expected, held.way, held.source, held.within, failure)
+
+    if held.of == "each":
+        return [made(f"{held.name}, {run.cells} cells", value(held, one), one) for run, one in done]
+    if held.of == "finest" or len(done) < LEVELS:
+        return [made(f"{held.name}, {run.cells} cells", value(held, one), one) for run, one in done[-1:]]
+    failed = next((one for _, one in done[: -LEVELS - 1 : -1] if one.failure), None)
+    if failed:
+        return [made(held.name, nan, failed)]
+    h, f = zip(*((1 / run.cells, value(held, one)) for run, one in done[: -LEVELS - 1 : -1]), strict=True)
+    limit = extrapolate(h, f)
+    if limit.kind in ("converges", "equal"):
+        return [made(f"{held.name}, limit", limit.limit)]
+    return [made(f"{held.name}, {done[-1][0].cells} cells", limit.finest)]
+
+
+def value(held: Held, result: Result) -> float:
+    """Number of a run; not a number of one that failed."""
+    return result.values.get(held.name, nan)

@@ -1,0 +1,172 @@
+"""Contract of a problem with a known answer: a file of cases/benchmark/problems, or a file of a user's.
+
+The docstring of the file is the statement of the problem, with its source; the class has its parameters as fields, each
+with the usual value, and says how it is set up, what is measured, and what is known of that:
+
+    measures, expectation   errors whose order is judged on refinement, see cases/harness/build.py
+    held                    numbers that are held against what is known: each run's, or the Richardson limit of three
+                            levels; an exact invariant is one with a bound of round-off
+    spoilt runs             `run.control` is the failing control: the same problem with a mistake in it, which must not
+                            pass; it shows that what is judged can fail
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from typing import ClassVar, Literal
+
+from mpm_verify.cases.benchmark.run import Run
+from mpm_verify.cases.harness.checks import Way
+from mpm_verify.cases.judging.records import Expectation
+from mpm_verify.solver.model import Load, Model, Observer
+from mpm_verify.solver.state import Floats, Particles
+
+Pair = tuple[str, str]  # quantity and norm
+Errors = dict[str, dict[str, float]]
+CONSTANTS = ("E", "nu", "rho0")  # parameters of a problem that are its material's too
+FIGURE, EXACT = "curves/", "exact"  # array curves/FIGURE/CURVE (2,n), x and y; EXACT is the known answer
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Outcome of a run.
+
+    Parameters
+    ----------
+    errors
+        By quantity and norm: those that the problem says in `measures`.
+    values
+        Other numbers by name; `held` holds some of them against what is known.
+    curves
+        Curves by figure and name, each two rows (2,n): x and y. The curve named exact is the known answer.
+    scale, floor
+        By quantity: its size, and its round-off floor.
+    """
+
+    errors: Errors = field(default_factory=dict)
+    values: dict[str, float] = field(default_factory=dict)
+    curves: Mapping[tuple[str, str], Floats] = field(default_factory=dict)
+    scale: dict[str, float] = field(default_factory=dict)
+    floor: dict[str, float] = field(default_factory=dict)
+
+
+class Watch(Observer):
+    """Observer of a run that measures it; `done` ends the run before its last step."""
+
+    done = False
+
+    def found(self, model: Model) -> Measured:
+        """Numbers of the run, after its last step."""
+        raise NotImplementedError
+
+
+def no_load(particles: Particles, t: float) -> None:
+    """No body force acts."""
+
+
+@dataclass(frozen=True)
+class Setup:
+    """Problem on one grid: the model at t = 0, the most steps, what measures it, and its body force."""
+
+    model: Model
+    steps: int
+    watch: Watch
+    load: Load = no_load
+
+
+@dataclass(frozen=True)
+class Held:
+    """Number of a run, `values[name]`, and what it is held against.
+
+    Parameters
+    ----------
+    name
+        Key of Measured.values.
+    expected, way, within, source
+        See cases/harness/checks.py: Check.
+    of
+        ``limit``: the Richardson limit of the finest three levels, or the finest value where there are fewer or they
+        do not approach one; ``finest``: the value on the finest cells; ``each``: that of every run.
+    """
+
+    name: str
+    expected: float
+    way: Way
+    source: str
+    within: float = 0.0
+    of: Literal["limit", "finest", "each"] = "limit"
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """Figure: what is on its axes, with units, and what it shows; curves are lines, or marks of single values."""
+
+    x: str
+    y: str
+    caption: str
+    lines: bool = False
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Problem with a known answer; its fields are its parameters, those of CONSTANTS are its material's too.
+
+    Attributes
+    ----------
+    source
+        Where it is published, with a DOI.
+    material
+        Usual constitutive model, with parameters that no field has.
+    cells, quick, ppc
+        Usual numbers of cells, those of a quick study, and particles per cell.
+    methods
+        Usual methods.
+    figures
+        Figures by the names that Measured.curves has.
+    tied
+        Whether there is no time step that could be halved.
+    """
+
+    source: ClassVar[str] = ""
+    material: ClassVar[str]
+    cells: ClassVar[tuple[int, ...]] = (8, 16, 32, 64)
+    quick: ClassVar[tuple[int, ...]] = (8, 12, 16, 24)
+    ppc: ClassVar[int] = 4
+    methods: ClassVar[tuple[str, ...]] = ("cpdi",)
+    figures: ClassVar[Mapping[str, Drawn]] = {}
+    tied: ClassVar[bool] = False
+
+    @property
+    def constants(self) -> dict[str, float]:
+        """Parameters that are those of its material."""
+        return {item.name: getattr(self, item.name) for item in fields(self) if item.name in CONSTANTS}
+
+    def check(self, run: Run) -> None:
+        """Raise ValueError with one line, which says what to type instead, for a run that cannot be."""
+
+    def setup(self, run: Run) -> Setup:
+        """Problem on the grid of a run; spoilt where `run.control`."""
+        raise NotImplementedError
+
+    def measures(self, run: Run) -> tuple[Pair, ...]:
+        """Quantity and norm of each error; none of a problem that is not judged by an order."""
+        return ()
+
+    def expectation(self, run: Run, quantity: str, norm: str) -> Expectation | None:
+        """Expectation of an error on refinement; None where it is only shown."""
+        return None
+
+    def held(self, run: Run) -> tuple[Held, ...]:
+        """Numbers that are held against what is known, of a refinement that `run` belongs to."""
+        return ()
+
+    def answers(self, run: Run, X: Floats) -> dict[str, Floats]:
+        """Known columns (n,) of the end by name, at reference positions X (n,2), for other solvers."""
+        return {}
+
+    def particles(self, run: Run) -> int:
+        """Number of particles, about."""
+        return run.cells * run.ppc
+
+    def updates(self, run: Run) -> float:
+        """Particle updates, about."""
+        return 40.0 * run.cells * self.particles(run)

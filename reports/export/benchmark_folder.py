@@ -1,0 +1,74 @@
+"""Folder of a benchmark for another solver: case.json, case.txt, particles.csv, known.csv, and all of it in words."""
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+from mpm_verify.cases.benchmark.exported import FORMAT, Exported
+from mpm_verify.cases.benchmark.problem import Problem
+from mpm_verify.cases.harness.store import Store
+from mpm_verify.mms.export.files import CASE, FLAT, PARTICLES, csv
+from mpm_verify.mms.export.record import flat
+from mpm_verify.reports.export.case_folder import README, TEMPLATES
+from mpm_verify.reports.sentences.benchmark import statement
+
+KNOWN = "known.csv"
+WAYS = {"relative": "", "absolute": "", "at_most": "at most ", "at_least": "at least "}
+OFS = {"limit": "the limit of refinement", "finest": "the finest grid", "each": "every grid"}
+
+
+def write(folder: Path, case: Exported, problem: Problem) -> list[Path]:
+    """Write the files of a benchmark.
+
+    Parameters
+    ----------
+    folder
+        New, empty, or with a benchmark that is written over.
+    case, problem
+        Content, and the problem that it is of.
+
+    Returns
+    -------
+    list of Path
+        What was written.
+
+    Raises
+    ------
+    ValueError
+        If something else is there.
+    """
+    usable(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    texts = {
+        FLAT: "".join(f"{name} {value}\n" for name, value in flat(case.record)),
+        PARTICLES: csv(case.particles),
+        **({KNOWN: csv({"id": case.particles["id"], **case.known})} if case.known else {}),
+        CASE: json.dumps(asdict(case.record), indent=1) + "\n",
+        README: words(case, problem),
+    }
+    for name, text in texts.items():
+        Store.write(folder / name, text.encode())
+    return [folder / name for name in texts]
+
+
+def usable(folder: Path) -> None:
+    """Raise ValueError unless a benchmark can be written there."""
+    if not folder.exists() or (folder.is_dir() and not any(folder.iterdir())):
+        return
+    try:
+        there = json.loads((folder / CASE).read_text(encoding="utf-8")).get("format")
+    except (OSError, ValueError, AttributeError):
+        there = None
+    if there != FORMAT:
+        raise ValueError(f"{folder} holds something that is not an exported benchmark; name a new folder")
+
+
+def words(case: Exported, problem: Problem) -> str:
+    """Text of README.md."""
+    environment = Environment(loader=FileSystemLoader(TEMPLATES), undefined=StrictUndefined, keep_trailing_newline=True)
+    environment.trim_blocks = environment.lstrip_blocks = True
+    return environment.get_template("benchmark_folder.md.j2").render(
+        case=case.record, statement=statement(problem), columns=list(case.known), ways=WAYS, ofs=OFS
+    )

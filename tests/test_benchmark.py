@@ -1,0 +1,277 @@
+"""Benchmarks: closed forms, each problem with a magnitude, a rate and an invariant, and that each control fails."""
+
+import json
+from dataclasses import replace
+from functools import cache
+from math import log2
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import mpmath as mp
+import numpy as np
+import pytest
+
+from mpm_verify.cases.benchmark.case import canonical, completed
+from mpm_verify.cases.benchmark.execute import execute
+from mpm_verify.cases.benchmark.exported import exported
+from mpm_verify.cases.benchmark.problem import Held
+from mpm_verify.cases.benchmark.problems.cell_crossing import GRADIENTS, formula
+from mpm_verify.cases.benchmark.problems.self_weight import SelfWeight
+from mpm_verify.cases.benchmark.run import Result, Run
+from mpm_verify.cases.benchmark.uniaxial import nominal, stretch
+from mpm_verify.cases.harness.build import Asked, build
+from mpm_verify.cases.harness.contract import case_named
+from mpm_verify.cases.harness.store import Store
+from mpm_verify.reports.export.document import schema
+from mpm_verify.solver._jit import use_threads
+from mpm_verify.solver.plugins import MATERIALS, METHODS, PROBLEMS, available, create
+from mpm_verify.solver.state import Particles
+from mpm_verify.verify.main import main
+
+SOLIDS = {"hencky": "hencky:E=1e4,nu=0,rho0=80", "neo_hookean": "neo_hookean:E=1e4,nu=0,rho0=80"}
+KNOWN = {"hencky": (0.30370, 24.233), "neo_hookean": (0.12542, 16.362)}
+
+
+@pytest.fixture(autouse=True)
+def one_thread() -> None:
+    use_threads(1)
+
+
+@cache
+def ran(problem: str, **axes: Any) -> Result:
+    return execute(Run(**canonical({"problem": problem, **axes})))[0]
+
+
+def outcomes(problem: str, store: Path, **axes: Any) -> set[str]:
+    """Outcomes of the checks of a study."""
+    case, asked = case_named("benchmark"), {"problem": (problem,), **{key: (value,) for key, value in axes.items()}}
+    study = build(Asked("benchmark", asked), "")
+    results = {run.digest: execute(run)[0] for run in study.runs}
+    assert case.examine is not None
+    return {str(check.outcome) for check in case.examine(study, results, Store(store, "benchmark")).checks}
+
+
+@pytest.mark.parametrize("name", list(SOLIDS))
+def test_the_column_at_rest_has_its_closed_form(name: str) -> None:
+    """Stretch and height by another way, in 30 digits, and as they are quoted."""
+    problem, material = SelfWeight(), create(MATERIALS, SOLIDS[name])
+    q = mp.mpf(80) * mp.mpf("9.81") * 50 / 10000
+    if name == "hencky":
+        w = mp.lambertw(q)
+        base, height = w / q, 50 * (w + w**2 / 2) / q
+    else:
+        base = mp.sqrt(q**2 + 1) - q
+        height = 50 * mp.quad(lambda s: mp.sqrt(s**2 + 1) - s, [0, q]) / q
+    found = stretch(material, problem.stress(material, 0.0)), problem.rest(material, np.array([50.0]))[0]
+    assert found == (pytest.approx(float(base.real), rel=1e-12), pytest.approx(float(mp.re(height)), rel=1e-12))
+    assert found == (pytest.approx(KNOWN[name][0], abs=5e-6), pytest.approx(KNOWN[name][1], abs=5e-4))
+
+
+@pytest.mark.parametrize("specification", ["hencky:nu=0.3", "neo_hookean:nu=0.2"])
+def test_the_nominal_stress_is_that_of_the_kernel(specification: str) -> None:
+    material = create(MATERIALS, specification)
+    p = Particles(np.zeros((1, 2)), np.ones(1), np.ones(1), np.zeros((1, 0)))
+    p.F[0, 1, 1] = 0.4
+    material.start(p)
+    material.update(p, 1.0)
+    assert nominal(material, 0.4) == pytest.approx(p.sigma[0, 1], rel=1e-12)
+    with pytest.raises(ValueError, match="bears no stress"):
+        stretch(material, 1.0)
+
+
+def test_the_stress_of_a_column_belongs_to_its_cells() -> None:
+    """Cells have it to round-off; of particles it is off by a quarter of a cell, exactly: an order that is none."""
+    for method, cells in (("cpdi", 8), ("tlmpm", 4), ("tlmpm", 8)):
+        found = ran("self_weight", method=method, cells=cells)
+        assert found.errors["sigma"]["cells"] < 1e-9 * 80 * 9.81 * 50
+        assert found.values["base_force"] == pytest.approx(1, abs=1e-9)
+        quarter = 80 * 9.81 * 50 / cells / 4
+        assert method != "tlmpm" or found.errors["sigma"]["particles"] == pytest.approx(quarter, rel=1e-9)
+
+
+def test_the_position_of_a_column_is_of_second_order() -> None:
+    coarse, fine = (ran("self_weight", method="tlmpm", cells=n).errors["u"]["rms"] for n in (4, 8))
+    assert fine == pytest.approx(4.053e-2, rel=1e-3)
+    assert 1.6 < log2(coarse / fine) < 2
+
+
+def test_domains_of_fixed_size_do_not_bear_a_column() -> None:
+    found = ran("self_weight", method="gimp", cells=8)
+    assert found.errors["sigma"]["cells"] > 100
+    assert found.errors["u"]["rms"] > 5 * ran("self_weight", method="cpdi", cells=8).errors["u"]["rms"]
+
+
+@pytest.mark.parametrize(("method", "peak"), [("mpm", 0.55), ("gimp", 0.055), ("bspline2", 0.05386)])
+def test_the_spurious_force_is_that_of_the_formula(method: str, peak: float) -> None:
+    found = ran("cell_crossing", method=method, cells=20).values
+    assert found["spurious_force"] == pytest.approx(peak, rel=1e-3)
+    assert found["off_formula"] < 1e-12
+
+
+@pytest.mark.parametrize("method", ["cpdi", "cpdi2", "cpgimp"])
+@pytest.mark.parametrize("ppc", [1, 4, 9])
+def test_domains_that_tile_have_none(method: str, ppc: int) -> None:
+    assert ran("cell_crossing", method=method, cells=20, ppc=ppc).values["spurious_force"] < 1e-13
+
+
+def test_the_formula_vanishes_where_particles_fill_cells_alike() -> None:
+    positions = np.linspace(0.01, 0.49, 7)
+    for gradient in GRADIENTS.values():
+        assert np.abs(formula(gradient, 0.5, 1.0, positions)).max() < 1e-14
+    assert set(np.abs(formula(GRADIENTS["mpm"], 0.55, 1.1, positions)).round(12)) == {0.0, 0.55}
+
+
+@pytest.mark.parametrize(("method", "distance"), [("mpm", 1.5), ("cpdi", 2.0), ("bspline2", 2.5), ("bspline3", 3.5)])
+def test_bars_touch_at_the_reach_of_their_weights(method: str, distance: float) -> None:
+    """At a distance that does not fall in cells, and momentum is kept to round-off."""
+    for cells in (8, 16):
+        found = ran("colliding_bars", method=method, cells=cells).values
+        assert found["distance"] == pytest.approx(distance, abs=0.08)
+        assert found["momentum"] < 1e-14
+
+
+def test_bars_exchange_their_velocities() -> None:
+    coarse, fine = (ran("colliding_bars", cells=n).values for n in (16, 32))
+    assert coarse["contact_time"] == pytest.approx(1.0356, abs=1e-3)
+    assert abs(fine["contact_time"] - 1) < 0.3 * abs(coarse["contact_time"] - 1)
+    assert 0.9 < coarse["stress"] < fine["stress"] < 1
+    assert 0.97 < coarse["exit_velocity"] < fine["exit_velocity"] < 1
+
+
+@pytest.mark.parametrize(
+    ("problem", "cells"), [("self_weight", 8), ("cell_crossing", 20), ("colliding_bars", 32)], ids=lambda one: str(one)
+)
+def test_the_control_fails(problem: str, cells: int, tmp_path: Path) -> None:
+    """Of the column the force and stress of each cell, of a bar what a spoilt stress or mass changes."""
+    assert "FAIL" in outcomes(problem, tmp_path, cells=cells, method="cpdi", control=True)
+
+
+def test_a_limit_is_held_and_not_the_finest_value() -> None:
+    case = case_named("benchmark").module
+    runs = build(
+        Asked("benchmark", {"problem": ("colliding_bars",), "method": ("cpdi",), "cells": (8, 16, 32)}), ""
+    ).runs
+    empty = {run.digest: replace(ran("cell_crossing"), run=run, values={"a": 1 + 1 / run.cells**2}) for run in runs}
+    series = case.collect(runs)[0]
+    held = Held("a", 1.0, "absolute", "", 1e-9)
+    (found,) = case.checks(held, series, empty)
+    assert (found.name, str(found.outcome)) == ("a, limit", "PASS")
+    (found,) = case.checks(replace(held, of="finest"), series, empty)
+    assert str(found.outcome) == "FAIL"
+    assert len(case.checks(replace(held, of="each"), series, empty)) == 3
+
+
+def test_a_material_is_completed_by_the_problem() -> None:
+    assert completed("hencky:E=1", {"E": 2.0, "nu": 0.0, "phi": 3.0}) == "hencky:E=1,nu=0"
+    named = canonical({"problem": "self_weight:E=2e4,H=10", "material": "neo_hookean"})
+    assert named["material"] == "neo_hookean:E=20000,nu=0,rho0=80"
+    assert Run(**named).digest != Run(**canonical({"problem": "self_weight"})).digest
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (["selfweight"], "did you mean self_weight?"),
+        (["self_weight", "--material", "mohr_coulomb"], "needs a material with an energy"),
+        (["colliding_bars", "--method", "tlmpm"], "never meet"),
+        (["cell_crossing", "--cells", "8"], "take 12 or more"),
+        (["colliding_bars:speed=2"], "at most 0.3"),
+    ],
+)
+def test_what_cannot_be_is_one_line(
+    arguments: list[str], says: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("sys.argv", ["verify", "benchmark", *arguments, "--dry-run"])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    text = capsys.readouterr().err
+    assert ended.value.code == 2
+    assert says in text
+    assert text.count("\n") == 1
+
+
+def test_the_command_judges_and_its_control_fails(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for more, code in (([], 0), (["--control"], 1)):
+        command = ["verify", "benchmark", "cell_crossing", "--method", "mpm,cpdi", "--json", "--out", str(tmp_path)]
+        monkeypatch.setattr("sys.argv", [*command, *more])
+        with pytest.raises(SystemExit) as ended:
+            main()
+        document = json.loads(capsys.readouterr().out)
+        jsonschema.validate(document, schema("benchmark"))
+        assert ended.value.code == code == document["exit_code"]
+
+
+def test_a_page_states_each_problem(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sys.argv", ["verify", "benchmark", "cell_crossing", "--page", "--out", str(tmp_path)])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    text = (tmp_path / "report.html").read_text()
+    assert ended.value.code == 0
+    assert "spurious force inside a uniformly stressed bar" in text
+    assert "7 of 7 checks pass." in text
+    assert (tmp_path / "figures" / "cell_crossing_force.svg").is_file()
+
+
+def test_a_problem_of_ones_own_is_a_file(tmp_path: Path) -> None:
+    own = tmp_path / "short_column.py"
+    own.write_text(
+        '"""Short column: that of the benchmarks, lower."""\nfrom dataclasses import dataclass\n'
+        "from mpm_verify.cases.benchmark.problems.self_weight import SelfWeight\n\n\n"
+        "@dataclass(frozen=True)\nclass ShortColumn(SelfWeight):\n    H: float = 5.0\n"
+    )
+    run = Run(**canonical({"problem": str(own), "cells": 4}))
+    found = execute(run)[0]
+    assert found.values["cell_stress"] < 1e-8 * 80 * 9.81 * 5
+    assert run.digest != Run(**canonical({"problem": "self_weight:H=5", "cells": 4})).digest
+
+
+@pytest.mark.parametrize("problem", available(PROBLEMS))
+def test_every_problem_is_exported(
+    problem: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for more, code in (([], 0), ([], 0), (["--frames", "3"], 2)):  # a folder of a benchmark is written over
+        monkeypatch.setattr("sys.argv", ["verify", "export", problem, "--cells", "16", "--to", str(tmp_path), *more])
+        with pytest.raises(SystemExit) as ended:
+            main()
+        assert ended.value.code == code
+    case = json.loads((tmp_path / "case.json").read_text())
+    table = np.genfromtxt(tmp_path / "particles.csv", delimiter=",", names=True)
+    assert len(table) == case["particles"]
+    area = 4 * (table["r1x"] * table["r2y"] - table["r1y"] * table["r2x"])
+    assert area == pytest.approx(table["V0"], rel=1e-12)
+    assert case["known"]
+    assert set(case["known"]) <= set((tmp_path / "README.md").read_text().split())
+    flat = dict(line.split(" ", 1) for line in (tmp_path / "case.txt").read_text().splitlines())
+    assert float(flat["dx"]) == case["dx"]
+
+
+def test_an_exported_column_says_where_it_rests() -> None:
+    found = exported("self_weight", None, 16, None, 0.4)
+    assert found.record.edges == {"left": "roller", "right": "roller", "bottom": "roller", "top": "free"}
+    assert found.record.gravity == (0.0, -9.81)
+    assert found.known["syy"] == pytest.approx(-80 * 9.81 * (50 - found.particles["Y"]))
+    assert 0 < found.known["y"].min() < found.known["y"].max() < 24.233
+
+
+@pytest.mark.parametrize("problem", available(PROBLEMS))
+@pytest.mark.parametrize("method", available(METHODS))
+def test_every_problem_says_what_is_known_of_every_method(problem: str, method: str) -> None:
+    run = Run(**canonical({"problem": problem, "method": method}))
+    stated = run.stated
+    assert stated.source
+    assert all(held.source for held in stated.held(run))
+    for quantity, norm in stated.measures(run):
+        expected = stated.expectation(run, quantity, norm)
+        assert expected is None or expected.source
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("problem", available(PROBLEMS))
+def test_the_usual_study_passes(problem: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sys.argv", ["verify", "benchmark", problem, "--no-page", "--out", str(tmp_path)])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    assert ended.value.code == 0
