@@ -211,12 +211,12 @@ def _coupled(r: Reason) -> str:
 
 
 def _coupled_too(r: Reason) -> str:
-    """What half the time step does to an error that is refuted whatever it does; empty where it does little."""
+    """Change of a refuted error with half the time step; empty where that is small."""
     return f"; {_changes(_number(r, 'change'))}" if "change" in r.numbers else ""
 
 
 def _changes(change: float) -> str:
-    """Which way and with which order half the time step changes the finest error, and what that points to."""
+    """Change of the finest error with half the time step: its direction, its order, and what that points to."""
     if change >= 0:
         return (
             f"half the time step raises the finest error by {words.percent(change, 0)}: something is lost in each step"
