@@ -68,7 +68,7 @@ class Rankine(Problem):
     g: float = 10.0
     q: float = 0.0
     transits: float = 400.0
-    damping: float = 0.7
+    damping: float = 0.1
 
     def check(self, run: Run) -> None:
         """Raise ValueError for what has no earth pressure of Rankine."""
