@@ -28,7 +28,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from mpm_verify.cases.benchmark.pressed import ROUND_OFF, STIFF, Pressed, slow, smooth, thinned
+from mpm_verify.cases.benchmark.pressed import STIFF, Pressed, balance, slow, smooth, thinned
 from mpm_verify.cases.benchmark.problem import Drawn, Held, Measured, Problem, Setup
 from mpm_verify.cases.benchmark.run import Run
 from mpm_verify.solver.boundary import box
@@ -118,11 +118,11 @@ class Footing(Problem):
         under = (grid.nodes[:, 0] < half) & (grid.nodes[:, 1] > upper[1] - 0.5 * dx)
         unit = soil.cohesion * half / self.E
         push = pushed(walls, under, 1, smooth(-self.settlement * unit, steps * dt), bool(self.rough))
-        reaction, balance = slow(model, push, np.zeros(2))
+        reaction, whole = slow(model, push, np.zeros(2))
         if run.control:
             reaction.part = under & (np.arange(len(under)) // grid.ny % 2 == 0)
 
-        def measure(travel: Floats, force: Floats) -> Measured:
+        def measure(travel: Floats, force: Floats, momentum: Floats) -> Measured:
             pressure, settled = -force / (soil.cohesion * half), -travel / unit
             curves = {
                 ("settlement", "run"): thinned(settled, pressure),
@@ -130,7 +130,7 @@ class Footing(Problem):
             }
             return Measured(values={"bearing": float(pressure[-ceil(LAST * len(pressure)) :].mean())}, curves=curves)
 
-        return Setup(model, steps, Pressed(push, reaction, balance, measure))
+        return Setup(model, steps, Pressed(push, reaction, whole, measure))
 
     def held(self, run: Run) -> tuple[Held, ...]:
         """Factor of bearing capacity: the limit within 2 %, and a bound of what locks; and the balance of momentum.
@@ -138,13 +138,12 @@ class Footing(Problem):
         Of single particles without smoothing nothing is held: see the statement of the problem.
         """
         limit = Held("bearing", FACTOR, "relative", SOURCE, 0.02)
-        balance = Held("unbalanced", ROUND_OFF, "at_most", "momentum of the whole body in each step", of="each")
         if split(run.smoothing)[0] in RELIEF:
-            return limit, balance
+            return (limit, *balance(run))
         bound = Held("bearing", FACTOR, "at_least", BOUND, of="each")
         if run.ppc == 1:
-            return (balance,)
-        return (limit, bound, balance) if run.cells >= RESOLVED else (bound, balance)
+            return balance(run)
+        return (*([limit] if run.cells >= RESOLVED else []), bound, *balance(run))
 
     def particles(self, run: Run) -> int:
         """Number of particles."""
