@@ -43,7 +43,7 @@ class Pressed(Watch):
     whole
         Balance of momentum.
     measure
-        What is made of travel, force and momentum, components along the axis of the push.
+        What is made of travel, force and momentum, on the axis of the push.
     """
 
     def __init__(self, walls: PushedWalls, reaction: Reaction, whole: Balance, measure: Measure) -> None:
