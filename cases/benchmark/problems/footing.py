@@ -16,7 +16,7 @@ the last node of 8 cells the pressure is an eighth too high.
 
 Soil flows at constant volume, and the four particles of a cell leave it few ways to (Nagtegaal, Parks & Rice 1974).
 Without smoothing the pressure goes on rising and is 28 % too high with 9 cells, 20 % with 17: it falls with the power
-0.6 of the cell, and comes to 0.997 of the exact one by Richardson's extrapolation. A grid has fewer velocities than the
+0.6 of the cell, and comes to 0.993 of the exact one by Richardson's extrapolation. A grid has fewer velocities than the
 soil, so that each value is above. F-bar or volumetric smoothing relieves it: a plateau, and 1 % or 3 % from the exact
 pressure with 9 cells. One particle per cell does not lock, but its hourglass modes ring, and local damping drags what
 rings and moves: 1.00 with 13 cells becomes 0.978 in four times the time.
