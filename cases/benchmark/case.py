@@ -61,6 +61,7 @@ def parts(asked: Asked) -> list[Asked]:
             "method": problem.methods,
             "cells": problem.quick if asked.quick else problem.cells,
             "ppc": (problem.ppc,),
+            "smoothing": problem.smoothings,
         }
         found.append(replace(asked, values={**usual, **asked.values, "problem": (name,)}))
     return found
@@ -121,7 +122,8 @@ def examine(study: Study[Run], results: Mapping[str, Result], store: Store) -> B
 def checks(held: Held, series: Series, results: Mapping[str, Result]) -> list[Check]:
     """Checks of one number of a refinement."""
     first = series.first
-    group = f"{label(first.problem)}, {label(first.method)}" + ", failing control" * first.control
+    smoothed = "" if first.smoothing == Run.smoothing else f" {label(first.smoothing)}"
+    group = f"{label(first.problem)}, {label(first.method)}{smoothed}" + ", failing control" * first.control
     done = [(run, results[run.digest]) for run in series.runs if run.digest in results]
 
     def made(name: str, found: float, result: Result | None = None) -> Check:

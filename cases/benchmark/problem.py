@@ -118,8 +118,8 @@ class Problem:
         Usual constitutive model, with parameters that no field has.
     cells, quick, ppc
         Usual numbers of cells, those of a quick study, and particles per cell.
-    methods
-        Usual methods.
+    methods, smoothings
+        Usual methods and smoothings.
     figures
         Figures by the names that Measured.curves has.
     tied
@@ -132,6 +132,7 @@ class Problem:
     quick: ClassVar[tuple[int, ...]] = (8, 12, 16, 24)
     ppc: ClassVar[int] = 4
     methods: ClassVar[tuple[str, ...]] = ("cpdi",)
+    smoothings: ClassVar[tuple[str, ...]] = ("none",)
     figures: ClassVar[Mapping[str, Drawn]] = {}
     tied: ClassVar[bool] = False
 
