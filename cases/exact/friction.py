@@ -53,18 +53,21 @@ def everywhere(axis: int) -> FrictionalWalls:
     return FrictionalWalls(plain.held.copy(), plain.value.copy(), plain.rate.copy(), plain, normal, MU * normal)
 
 
-def carry(subject: Subject, variant: Variant, axis: int, pull: float, press: float, v: float) -> tuple[Floats, float]:
+def carry(
+    subject: Subject, variant: Variant, axis: int, pull: float, press: tuple[float, ...], v: float
+) -> tuple[Floats, float]:
     """Tangential and normal shifts and velocities (P,4) after some steps, and what F and sigma changed by.
 
-    `pull` is the tangential and `press` the normal force per mass, times dt over c; `v` is the tangential velocity at
-    first over c.
+    `pull` is the tangential and `press` the normal force per mass of each step, times dt over c; `v` is the tangential
+    velocity at first over c.
     """
     p = populated(subject, layout(), np.eye(2))
     p.v[:, 1 - axis] = v * subject.speed
     model = modelled(subject, p, variant, everywhere(axis))
     force, x = np.zeros(2), by_id(p, "x")
-    force[axis], force[1 - axis] = -press * subject.speed / model.dt, pull * subject.speed / model.dt
-    for _ in range(STEPS):
+    force[1 - axis] = pull * subject.speed / model.dt
+    for one in press:
+        force[axis] = -one * subject.speed / model.dt
         advance(model, lambda particles, t: np.copyto(particles.b, np.broadcast_to(force, particles.b.shape)))
     columns = [1 - axis, axis]
     moves = (by_id(model.particles, "x") - x)[:, columns] / DX
@@ -75,7 +78,7 @@ def slide(subject: Subject, variant: Variant) -> Tested:
     """Body that slides: it goes faster by g_t - mu g_n, or slows down, turns round and sticks where |g_t| < mu g_n."""
     worst = 0.0
     for axis, part, v in SLIDES:
-        rows, other = carry(subject, variant, axis, part * PRESSED, PRESSED, v)
+        rows, other = carry(subject, variant, axis, part * PRESSED, STEPS * (PRESSED,), v)
         moved, speed = 0.0, v
         for _ in range(STEPS):
             speed += part * PRESSED
@@ -87,14 +90,16 @@ def slide(subject: Subject, variant: Variant) -> Tested:
 
 def stick(subject: Subject, variant: Variant) -> Tested:
     """Body at rest under a tangential force of 0.99 mu g_n: it does not move, to the last bit."""
-    rows, _ = carry(subject, variant, 1, 0.99 * MU * PRESSED, PRESSED, 0.0)
+    rows, _ = carry(subject, variant, 1, 0.99 * MU * PRESSED, STEPS * (PRESSED,), 0.0)
     return Tested(f"friction_stick {variant}", off(rows, 0.0, 1.0), 0.0, Part.FRICTION)
 
 
 def leave(subject: Subject, variant: Variant) -> Tested:
-    """Body that a force tears off the wall: nothing holds it, and nothing rubs."""
-    rows, other = carry(subject, variant, 1, PRESSED, -PRESSED, 0.3)
-    speeds = np.array([0.3, 0.0]) + PRESSED * np.arange(1, STEPS + 1)[:, None]
+    """Body that is pressed for two steps and then torn off the wall: nothing holds it, and nothing rubs, any more."""
+    press = np.array([1.0, 1.0, -1.0, -1.0]) * PRESSED
+    rows, other = carry(subject, variant, 1, PRESSED, tuple(press), 0.3)
+    gained = np.stack([PRESSED - MU * np.maximum(press, 0.0), np.maximum(-press, 0.0)], axis=1)
+    speeds = np.array([0.3, 0.0]) + np.cumsum(gained, axis=0)
     moved = subject.dt * subject.speed / DX * speeds.sum(axis=0)
     worst = max(off(rows, np.concatenate([moved, speeds[-1]]), 1.0), other)
     return Tested(f"friction_leave {variant}", worst, bound(2 * STEPS * subject.support), Part.FRICTION)
