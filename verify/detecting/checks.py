@@ -41,6 +41,8 @@ COARSE: Mapping[str, tuple[tuple[int, ...], tuple[int, ...]]] = {  # cells and p
     "self_weight": ((8, 12, 16), (4,)),
     "colliding_bars": ((8, 16, 32), (4,)),
     "cell_crossing": ((20,), (1, 4)),
+    "sliding_block": ((4,), (4,)),
+    "rolling_cylinder": ((8, 16), (4,)),
 }
 SMALL: Mapping[str, tuple[Any, ...]] = {
     "cells": (3,),
