@@ -155,7 +155,7 @@ def test_a_body_leaves_and_a_fixed_floor_holds_it() -> None:
         assert (v[-1, 1] == pytest.approx(G * m.time)) == flies
 
 
-def test_the_wall_is_felt_up_to_a_cell_early() -> None:
+def test_the_wall_acts_up_to_a_cell_early() -> None:
     """A block that falls on a floor is stopped as soon as its lowest weights reach it: with hats within a cell."""
     m = incline(0.3, v0=0.0, method="mpm")
     m.particles.sigma[:] = 0.0

@@ -8,7 +8,7 @@ A cylinder of radius R starts from rest on a plane that falls by theta. Its cent
 as friction gives the torque R F to the moment of inertia m R^2 / 2 (Goldstein, Classical Mechanics, on rolling). On 25
 degrees rolling_cylinder, whose mu is 0.3, rolls, and rolling_cylinder:mu=0.1 slides.
 
-Registered, a gap: a wall is felt up to a cell early, as its nodes have mass as soon as a body is that near. So the
+Registered, a gap: a wall acts up to a cell early, as its nodes have mass as soon as a body is that near. So the
 cylinder starts a cell above the floor. Put down on the line of the floor it would lie like a block, on all nodes under
 the cells that it reaches into, and not turn. With a gap of d cells below it, it rolls on the radius r = R + d dx,
 
@@ -114,7 +114,7 @@ class RollingCylinder(Problem):
             return (friction,)
         if self.rolls:
             return (
-                Held("gap", 0.0, "at_least", "the wall is felt early, not late", of="each"),
+                Held("gap", 0.0, "at_least", "the wall acts early, not late", of="each"),
                 Held("gap", 1.0, "at_most", "reach of the weights", of="each"),
                 Held("slip", 0.0, "at_least", "it turns no faster than it rolls", of="each"),
                 Held("slip", MOST, "at_most", "the gap, and what slips beside it", of="each"),
