@@ -44,6 +44,13 @@ class Walls:
     def move(self, grid: Grid, t: float, dt: float) -> None:
         """Set the walls for the step from t to t + dt; these stand still."""
 
+    def touch(self, grid: Grid, dt: float, cutoff: float) -> None:
+        """Set what depends on momentum and force at the nodes, see solver/friction.py; of these nothing does."""
+
+    def in_strain(self) -> tuple[NDArray[np.bool_], Floats, Floats]:
+        """Components held of velocities that strain the particles and do not move them: `held`, `value` and `rate`."""
+        return self.held, self.value, self.rate
+
 
 Rule = Callable[[Floats, float, float], tuple[NDArray[np.bool_], Floats, Floats]]
 
@@ -89,13 +96,19 @@ def box(grid: Grid, kind: Kind | tuple[Kind, Kind, Kind, Kind]) -> Walls:
     for name in kinds:
         if name not in get_args(Kind):
             raise ValueError(f"no wall {name!r}; choose from {', '.join(get_args(Kind))}")
-    slack, held = 1e-9 * grid.dx, np.zeros(grid.nodes.shape, dtype=bool)
-    behind = (grid.nodes <= grid.lower + slack, grid.nodes >= grid.upper - slack)
+    held = np.zeros(grid.nodes.shape, dtype=bool)
     for side, name in enumerate(kinds):
-        axis, there = side // 2, behind[side % 2][:, side // 2]
+        axis, there = side // 2, behind(grid, side)
         held[there, axis] |= name != "free"
         held[there, 1 - axis] |= name == "fixed"
     return Walls(held, np.zeros(held.shape), np.zeros(held.shape))
+
+
+def behind(grid: Grid, side: int) -> NDArray[np.bool_]:
+    """Nodes (n,) on a side of the domain and behind it; sides are left, right, bottom, top."""
+    x, slack = grid.nodes[:, side // 2], 1e-9 * grid.dx
+    on: NDArray[np.bool_] = (x >= grid.upper[side // 2] - slack) if side % 2 else (x <= grid.lower[side // 2] + slack)
+    return on
 
 
 @kernel(nothing(F1, F2, F2, flag[:, ::1], F2, F2, flag, f8, f8, i8), parallel=True)

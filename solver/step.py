@@ -141,6 +141,7 @@ def equation_of_motion(model: Model) -> None:
     if model.surface:
         model.surface.act(model)
     model.tell("before_forces")
+    w.touch(g, model.dt, model.cutoff)
     if model.damping:
         model.damped += model.damping.apply(g, w, model.dt, model.cutoff)
     solve(

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from fixtures_edges import EDGES
+from fixtures_friction import FRICTION
 
 from mpm_verify.solver import boundary, context, damping, model, step
 from mpm_verify.solver._jit import BLOCK, kernel
@@ -703,6 +704,7 @@ DEFECTS = {
     "damping of nothing takes": Defect(patched(step, "equation_of_motion", breathes), ("undamped",)),
     "state that is not stored": Defect(hidden_state, ("restart",)),
     **{name: Defect(plant, seen_by) for name, (plant, seen_by) in EDGES.items()},
+    **{name: Defect(plant, seen_by, material="hypoelastic") for name, (plant, seen_by) in FRICTION.items()},
 }
 
 

@@ -129,6 +129,7 @@ def test_density_and_modulus_scaled_together() -> None:
         {"material": "ubcsand", "start": "oedometric"},
         {"smoothing": "deviatoric", "damping": 0.05},
         {"gate": 2.0, "left": "fixed"},
+        {"gate": 2.0, "floor": "frictional", "left": "frictional"},
     ],
     ids=str,
 )
@@ -153,6 +154,7 @@ def test_a_mirrored_column_is_the_mirror_image(change: Any) -> None:
         ({"damping": 0.05}, 0.9),
         ({"smoothing": "deviatoric", "left": "fixed"}, 0.9),
         ({"gate": 1.0}, 0.5),
+        ({"floor": "frictional", "left": "frictional"}, 0.9),
     ],
     ids=str,
 )
@@ -164,6 +166,29 @@ def test_what_else_there_is(change: Any, gone: float) -> None:
     assert arrays["curve_front_99"][-1] > (1 + gone) * SMALL.width
     assert result.values["most_momentum_lost"] < 1e-9
     assert (result.values["damping"] > 0) == ("damping" in change)
+
+
+def test_a_floor_with_friction(done: Any) -> None:
+    """The less friction, the further it runs; friction takes energy in each step, as much as all walls do; a
+    coefficient counts where there is friction."""
+    fronts = [done[0].values["front_99"]]
+    for mu in (0.47, 0.1):
+        result, arrays = execute(replace(SMALL, floor="frictional", mu=mu))
+        fronts.append(result.values["front_99"])
+        first = float(arrays["curve_potential"][0])
+        assert result.values["unbalanced"] < 1e-12
+        assert result.values["most_momentum_lost"] < 1e-9
+        assert (np.diff(arrays["curve_friction"]) >= 0).all()
+        assert result.values["friction"] > 0.01 * first
+        assert result.values["friction"] == pytest.approx(-result.values["walls"], rel=0.1)
+    assert fronts == sorted(fronts)
+    assert fronts[2] > 1.05 * fronts[0]
+    assert done[0].values["friction"] == 0.0
+    assert replace(SMALL, mu=0.1).digest == SMALL.digest
+    assert replace(SMALL, mu=0.1, floor="frictional").digest != replace(SMALL, floor="frictional").digest
+    for wrong, said in (({"mu": -0.1}, "mu = -0.1 must be zero or more"), ({"floor": "sandy"}, "floor = 'sandy' must")):
+        with pytest.raises(ValueError, match=said):
+            replace(SMALL, **wrong)
 
 
 def test_a_step_that_is_too_long_is_a_failed_run() -> None:

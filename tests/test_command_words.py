@@ -143,7 +143,7 @@ CHOICES = [
     ("mms", "solution", available(SOLUTIONS)),
     ("column", "material", available(MATERIALS)),
     ("column", "start", ["none", "k0", "oedometric"]),
-    ("column", "left", ["roller", "fixed"]),
+    ("column", "left", ["roller", "fixed", "frictional"]),
     ("column", "damping_kind", ["local", "objective"]),
     ("column", "deformation", ["exponential", "linear"]),
     ("column", "mirror", ["yes", "no"]),

@@ -4,6 +4,7 @@ A column 90.5 mm wide and 633.5 mm high stands on a floor that nothing slips on,
 other side is gone, or is lifted. Table 1: E = 840 kPa, nu = 0.3, phi = 31 deg, psi = 1 deg, 2650 kg/m^3, g = 10 m/s^2.
 The paper leaves open, and this is our choice, each a parameter of ColumnRun:
     mesh     a whole number of cells of the width; its 0.67 mm are half a grain, and 135 cells of the width
+    floor    nothing slips on it, or it has friction; then grains that leave it are not held
     wall     a roller at x = 0; floor and walls hand their reaction on to the particles (Walls.stops)
     stress   none at first, so that the column first sags; or at rest, or by the material's oedometric loading
     start    the gate is gone at once
@@ -28,9 +29,10 @@ from mpm_verify.cases.column.start import stress
 from mpm_verify.cases.harness.environment import environment
 from mpm_verify.cases.harness.memory import forget_peak, peak_memory
 from mpm_verify.cases.harness.progress import Progress
-from mpm_verify.solver.boundary import Walls, box, moving
+from mpm_verify.solver.boundary import Walls, moving
 from mpm_verify.solver.damping import Damping
 from mpm_verify.solver.failure import RunFailed
+from mpm_verify.solver.friction import FrictionalWalls, frictional
 from mpm_verify.solver.layout import rectangle
 from mpm_verify.solver.plugins import MATERIALS, METHODS, SMOOTHINGS, TRANSFERS, create, optional
 from mpm_verify.solver.state import Floats, Grid, Particles
@@ -102,10 +104,13 @@ def basis_of(run: ColumnRun) -> Basis:
 
 def walls(run: ColumnRun, grid: Grid) -> Walls:
     """Floor, wall, end of the channel, and the gate while it is there."""
-    left, right = ("roller", run.left) if run.mirror else (run.left, "roller")
-    made = box(grid, (left, right, "fixed", "free"))  # type: ignore[arg-type]
+    floor, wall = (run.mu if kind == "frictional" else kind for kind in (run.floor, run.left))
+    left, right = ("roller", wall) if run.mirror else (wall, "roller")
+    made = frictional(grid, (left, right, floor, "free"))  # type: ignore[arg-type]
     if run.gate < inf:
-        made = moving(grid, Gate(run, grid, made))
+        still = made.still if isinstance(made, FrictionalWalls) else made
+        gated = moving(grid, Gate(run, grid, still))
+        made = replace(made, still=gated) if isinstance(made, FrictionalWalls) else gated
     made.stops = run.stops
     return made
 

@@ -16,6 +16,7 @@ from scipy import ndimage
 
 from mpm_verify.cases.column.run import AT_REST, ColumnRun
 from mpm_verify.solver.energy_budget import Budget, kinetic, residual
+from mpm_verify.solver.friction import FrictionalWalls
 from mpm_verify.solver.model import Model, Observer
 from mpm_verify.solver.state import Floats
 
@@ -68,6 +69,7 @@ class Measure(Observer):
             "toe": float(x[heap, 0].max()),
             "height": float(profile[0]),
             **terms,
+            "friction": model.walls.taken if isinstance(model.walls, FrictionalWalls) else 0.0,
             **self.split(model, terms["work"]),
             "residual": residual(terms, self.first),
             "momentum_lost": float(np.abs(moved - given).max()),

@@ -9,7 +9,7 @@ from mpm_verify.solver.plugins import MATERIALS, METHODS, SMOOTHINGS, TRANSFERS,
 
 KINDS = ("local", "objective")
 Start = Literal["none", "k0", "oedometric"]
-Wall = Literal["roller", "fixed"]
+Wall = Literal["roller", "fixed", "frictional"]
 MOST = 1000  # cells: 4 GB of grid
 STRIPS = 7  # of the width
 AT_REST = 1e-4  # kinetic energy of the grid, of the potential energy at first: a run below it rests
@@ -21,8 +21,9 @@ class ColumnRun(RunRecord):
 
     `method`, `material`, `transfer` and `smoothing` are specifications, smoothing may be "none"; `cells` of the
     width; `damping`: its alpha; `courant`: dt c/dx, c the compression wave; `duration` and `gate` (speed at which
-    the gate is lifted, inf: gone at once) in SI units; `start`: initial stress; `left`: the wall at x = 0; `stops`:
-    see solver.boundary.Walls; `offset` shifts the particles in their cells, by fractions of their spacing; `mirror`
+    the gate is lifted, inf: gone at once) in SI units; `start`: initial stress; `floor`, and `left`, the wall at x = 0;
+    `mu`: see solver/friction.py; `stops`: see solver.boundary.Walls; `offset` shifts the particles in their cells, by
+    fractions of their spacing; `mirror`
     puts the wall to the right. What keeps the column alive: `limit` of the half diagonals of CPDI domains, in cells
     (inf: none; never below what a particle begins with), `void`-strain memory of materials that have one and no
     cohesion, and the exponential `deformation`. Raises ValueError with one line for what no column has.
@@ -44,7 +45,9 @@ class ColumnRun(RunRecord):
     courant: float = axis(0.4, "dt c / dx, c the compression wave of the constitutive model.")
     duration: float = axis(1.4, "Seconds.")
     start: Start = axis("none", "Stress at first: none, k0 or oedometric.")
-    left: Wall = axis("roller", "The wall: roller or fixed (nothing slips).")
+    floor: Wall = axis("fixed", "The floor: fixed (nothing slips), roller, or frictional.")
+    left: Wall = axis("roller", "The wall: roller, fixed (nothing slips), or frictional.")
+    mu: float = axis(0.47, "Friction coefficient of floor and wall where they are frictional.")
     gate: float = axis(inf, "Speed at which the gate is lifted, m/s; inf: gone at once.")
     stops: bool = axis(True, "Walls hand their reaction on to the particles.")
     offset: tuple[float, float] = axis((0.0, 0.0), "Shift of the particles, in fractions of their spacing.")
@@ -65,6 +68,8 @@ class ColumnRun(RunRecord):
         for name in ("courant", "duration", "width", "aspect", "g"):
             if not 0 < getattr(self, name) < inf:
                 raise ValueError(f"{name} = {getattr(self, name)} must be above zero and finite")
+        if not 0 <= self.mu < inf:
+            raise ValueError(f"mu = {self.mu} must be zero or more, and finite; 0.47 is usual")
         for name in ("gate", "limit"):
             if not getattr(self, name) > 0:
                 raise ValueError(f"{name} = {getattr(self, name)} must be above zero, or inf")
@@ -76,7 +81,8 @@ class ColumnRun(RunRecord):
             raise ValueError(f"channel = {self.channel} must make whole cells: {self.cells} are the width")
         if self.g > 1e4:
             raise ValueError(f"g = {self.g} must be at most 1e4")
-        for name, words in (("start", get_args(Start)), ("left", get_args(Wall)), ("damping_kind", KINDS)):
+        walls = get_args(Wall)
+        for name, words in (("start", get_args(Start)), ("floor", walls), ("left", walls), ("damping_kind", KINDS)):
             if getattr(self, name) not in words:
                 raise ValueError(f"{name} = {getattr(self, name)!r} must be one of {', '.join(words)}")
 
@@ -119,9 +125,9 @@ class ColumnRun(RunRecord):
 
     @property
     def digest(self) -> str:
-        """Name of the Result, 16 hex digits. No damping is of no kind."""
+        """Name of the Result, 16 hex digits. No damping is of no kind, and no friction of no coefficient."""
         same = self if self.damping else replace(self, damping_kind="local")
-        return same.named()
+        return (same if "frictional" in (self.floor, self.left) else replace(same, mu=ColumnRun.mu)).named()
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,6 +1,6 @@
 """All exact tests of a method and a material; `run` is what a campaign calls."""
 
-from mpm_verify.cases.exact import edges, motion, smoothing, state, step, symmetry, unusual, walls, weights
+from mpm_verify.cases.exact import edges, friction, motion, smoothing, state, step, symmetry, unusual, walls, weights
 from mpm_verify.cases.exact.body import Subject
 from mpm_verify.cases.exact.groups import GROUPS
 from mpm_verify.mms.constitutive import driver, history, stress
@@ -10,6 +10,7 @@ GRID = {
     "weights": weights.tests,
     "motion": motion.tests,
     "walls": walls.tests,
+    "friction": friction.tests,
     "step": step.tests,
     "edges": edges.tests,
     "symmetry": symmetry.tests,

@@ -12,7 +12,9 @@ from typing import Any
 import numpy as np
 
 from mpm_verify.mms.constitutive.driver import random
-from mpm_verify.solver.boundary import Kind, Walls, box, moving
+from mpm_verify.solver.boundary import Kind, Walls, moving
+from mpm_verify.solver.friction import Sides as Four
+from mpm_verify.solver.friction import frictional
 from mpm_verify.solver.layout import Layout, rectangle
 from mpm_verify.solver.plugins import MATERIALS, METHODS, TRANSFERS, available, create
 from mpm_verify.solver.state import Floats, Grid, Ints, Particles
@@ -31,7 +33,7 @@ QUARTER = np.array([[0.0, -1.0], [1.0, 0.0]])
 STRESS_UPDATES: tuple[Stress, ...] = ("usl", "musl", "usf")
 BLEND = "flip:fraction=0.9"  # of FLIP and PIC
 FLIP = {"flip": 1.0, BLEND: 0.9, "pic": 0.0, "apic": 0.0, "fmpm": 0.0}  # fraction of FLIP by transfer
-Sides = Kind | tuple[Kind, Kind, Kind, Kind]
+Sides = Kind | Four
 Rule = Callable[[Floats, float, float], tuple[Any, Floats, Floats]]
 
 
@@ -150,7 +152,7 @@ def modelled(
 ) -> Model:
     """Model of particles on a grid of so many cells, its walls by their kind or as they are; `more` goes to Model."""
     g = grid(cells)
-    held = walls if isinstance(walls, Walls) else box(g, walls)
+    held = walls if isinstance(walls, Walls) else frictional(g, (walls,) * 4 if isinstance(walls, str) else walls)
     return Model(g, p, subject.basis, subject.material, held, subject.dt, variant.scheme, **more)
 
 

@@ -154,16 +154,16 @@ class Dense:
         """Modified update-stress-last: F by the particles' new velocities, mapped back."""
         w = weights(self.model, s.x, s.F)
         end, _ = self.forward(w, s, b)
-        walls = self.model.walls
-        mapped = np.where(walls.held, walls.value, self.over_mass(w, self.momentum(w, end.v, end.B)))
+        held, value, _ = self.model.walls.in_strain()
+        mapped = np.where(held, value, self.over_mass(w, self.momentum(w, end.v, end.B)))
         F = self.strained(w, s.F, self.filtered(w, mapped))
         return replace(end, F=F, sigma=sigma_of(F))
 
     def first(self, s: State, b: Floats, sigma_of: "Sigma") -> State:
         """Update-stress-first: F and sigma by the velocities before the step, then forces."""
-        w, walls, dt = weights(self.model, s.x, s.F), self.model.walls, self.model.dt
+        w, (held, value, rate) = weights(self.model, s.x, s.F), self.model.walls.in_strain()
         before = self.over_mass(w, self.momentum(w, s.v, s.B))
-        before = np.where(walls.held, walls.value - dt * walls.rate, before)
+        before = np.where(held, value - self.model.dt * rate, before)
         F = self.strained(w, s.F, self.filtered(w, before))
         strained = replace(s, F=F, sigma=sigma_of(F))
         end, _ = self.forward(weights(self.model, s.x, F), strained, b)

@@ -7,6 +7,8 @@ GROUPS = {
     "motion": ("fall", "throw_damped_local", "throw_damped_objective", "oscillator_local", "oscillator_objective",
                "budget"),
     "walls": ("slide", "no_force_free", "no_force_roller", "no_force_fixed"),
+    "friction": ("friction_slide", "friction_stick", "friction_leave", "friction_momentum", "friction_budget",
+                 "friction_mirror", "friction_step"),
     "step": ("step", "affine", "domain_motion"),
     "edges": ("edge_sums", "edge_pulled", "edge_driven", "edge_affine"),
     "symmetry": ("mirror", "quarter_turn"),

@@ -19,17 +19,17 @@ from mpm_verify.cases.exact.body import (
 )  # fmt: skip
 from mpm_verify.mms.constitutive.driver import rotated
 from mpm_verify.mms.constitutive.tested import Pairs, Part, Reason, Tested, attempt, bound, farthest, not_asked
-from mpm_verify.solver.boundary import Kind
+from mpm_verify.solver.friction import Sides
 from mpm_verify.solver.layout import Layout
 from mpm_verify.solver.state import Floats, Ints, Particles
 from mpm_verify.solver.step import Model, advance
 
 STEPS = 2
-Sides = tuple[Kind, Kind, Kind, Kind]
 SIDES: Sides = ("roller", "free", "fixed", "free")  # left, right, bottom, top
-MOVED: dict[str, tuple[Floats, Sides]] = {
-    "mirror": (MIRROR, ("free", "roller", "fixed", "free")),
-    "quarter_turn": (QUARTER, ("free", "fixed", "roller", "free")),
+MAPS = {"mirror": MIRROR, "quarter_turn": QUARTER}
+MOVED: dict[str, Sides] = {
+    "mirror": ("free", "roller", "fixed", "free"),
+    "quarter_turn": ("free", "fixed", "roller", "free"),
 }
 
 
@@ -37,19 +37,20 @@ def tests(subject: Subject) -> list[Tested]:
     """Mirror and quarter turn with every step."""
     found = []
     for variant in variants():
-        found += attempt(f"mirror {variant}", Part.SYMMETRY, partial(moved, subject, variant))
+        found += attempt(f"mirror {variant}", Part.SYMMETRY, partial(moved, subject, variant, SIDES, MOVED))
     return found
 
 
-def moved(subject: Subject, variant: Variant) -> list[Tested]:
-    """Body as it is, mirrored and turned."""
-    names = {name: f"{name} {variant}" for name in MOVED}
+def moved(subject: Subject, variant: Variant, sides: Sides, mapped: dict[str, Sides]) -> list[Tested]:
+    """Body between walls as it is, mirrored and turned; `mapped` are the walls by the name of the map."""
+    names = {name: f"{name} {variant}" for name in mapped}
     if getattr(subject.material, "reversal", 0.0):
         return [not_asked(name, Part.SYMMETRY, Reason.OWN_AXES) for name in names.values()]
-    plain, most = run(subject, variant, np.eye(2), SIDES), bound(4 * STEPS * subject.support)
+    plain, most = run(subject, variant, np.eye(2), sides), bound(4 * STEPS * subject.support)
+    answers = {name: run(subject, variant, MAPS[name], given) for name, given in mapped.items()}
     return [
-        Tested(names[name], distance(subject, plain, run(subject, variant, Q, sides), Q), most, Part.SYMMETRY)
-        for name, (Q, sides) in MOVED.items()
+        Tested(names[name], distance(subject, plain, answer, MAPS[name]), most, Part.SYMMETRY)
+        for name, answer in answers.items()
     ]
 
 

@@ -33,6 +33,7 @@ class Part(StrEnum):
     STEP = "step"
     SYMMETRY = "symmetry"
     WALLS = "walls"
+    FRICTION = "friction"
     DAMPING = "damping"
     STRESS = "stress"
     RATE = "rate"

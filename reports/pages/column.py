@@ -131,13 +131,15 @@ def energy(ran: Sequence[FinishedRun], labels: Sequence[str], add: Add) -> Secti
          f"The paper's Figure 6: {name} energy.")
         for name in ("potential", "kinetic")
     ]  # fmt: skip
-    columns = ("potential", "kinetic", "on the grid", "elastic", "plastic", "damping", "walls", "transfer",
-               "convection", "residual")  # fmt: skip
+    rubs = any(one.values.get("friction") for one in ran)
+    columns = ("potential", "kinetic", "on the grid", "elastic", "plastic", "damping", "walls",
+               *["slip on walls"] * rubs, "transfer", "convection", "residual")  # fmt: skip
     rows = []
     for one, label in zip(ran, labels, strict=True):
         start, v = float(one.curves["potential"][0]), one.values
         parts = [v[name] / start for name in ("potential", "kinetic", "on_grid", "elastic", "plastic", "damping")]
-        parts += [-v["walls"] / start, v["transfer"] / start, v["convection"] / start]
+        parts += [-v["walls"] / start, *[v["friction"] / start] * rubs]
+        parts += [v["transfer"] / start, v["convection"] / start]
         rows.append((label, *(f"{100 * part:.2f}" for part in parts), f"{v['unbalanced']:.1e}"))
     text = (
         "Kinetic energy of the particles includes velocities that the grid does not see and that move nothing; at rest "
@@ -146,6 +148,7 @@ def energy(ran: Sequence[FinishedRun], labels: Sequence[str], add: Add) -> Secti
         "particles. Each term is computed apart from the others; the residual is what their sum misses. Where the "
         "gradients of weights jump, as those of classical MPM do, convection is not small."
     )
+    text += " Slip on walls is the part of walls that friction takes, by velocities at the end of each step." * rubs
     return Section("energy", "Energy", [text], figures, [
         Table("Energies at the end, % of the initial potential energy; residual: largest at any time",
               ("run", *columns), tuple(rows))])  # fmt: skip

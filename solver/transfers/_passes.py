@@ -207,7 +207,8 @@ def lumped(context: Context, momentum: Floats) -> Floats:
 
 def walled(context: Context, momentum: Floats, before: bool = False) -> Floats:
     """Momentum over mass as (n,4), with the walls' velocities at the end of the step, or before it."""
-    g, w, velocity = context.grid, context.walls, np.empty_like(momentum)
-    value = w.value - context.dt * w.rate if before else w.value
-    solve(g.mass, momentum, velocity, w.held, value, w.rate, False, 0.0, context.cutoff, g.ny)
+    g, velocity = context.grid, np.empty_like(momentum)
+    held, value, rate = context.walls.in_strain()
+    value = value - context.dt * rate if before else value
+    solve(g.mass, momentum, velocity, held, value, rate, False, 0.0, context.cutoff, g.ny)
     return velocity

@@ -43,6 +43,8 @@ COARSE: Mapping[str, tuple[tuple[int, ...], tuple[int, ...]]] = {  # cells and p
     "cell_crossing": ((20,), (1, 4)),
     "footing": ((5,), (4,)),
     "rankine:transits=200": ((4,), (4,)),
+    "sliding_block": ((4,), (4,)),
+    "rolling_cylinder": ((8, 16), (4,)),
 }
 SMALL: Mapping[str, tuple[Any, ...]] = {
     "cells": (3,),

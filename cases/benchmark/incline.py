@@ -1,0 +1,113 @@
+"""Incline: a plane with friction at y = 0, gravity tilted against it, and the motion of a body on it."""
+
+from dataclasses import dataclass
+from math import ceil, cos, radians, sin, tan
+
+import numpy as np
+
+from mpm_verify.cases.benchmark.problem import EXACT, Measured, Setup, Watch
+from mpm_verify.cases.benchmark.run import Run
+from mpm_verify.solver.friction import frictional
+from mpm_verify.solver.layout import Layout
+from mpm_verify.solver.model import Model
+from mpm_verify.solver.plugins import MATERIALS, METHODS, SMOOTHINGS, TRANSFERS, create, split
+from mpm_verify.solver.state import Floats, Grid
+from mpm_verify.solver.step import Scheme
+
+# With hats at points a body that moves has nodes of hardly any mass at its front: update-stress-last inverts it there.
+STRESS = {"mpm": "musl"}
+ROOM = 3  # cells of the grid around the body and its way
+MOST = 200  # points of a curve
+
+
+@dataclass(frozen=True)
+class Incline:
+    """Plane that falls by `theta` degrees to the right, with friction `mu`, under gravity `g`."""
+
+    theta: float
+    mu: float
+    g: float
+
+    @property
+    def gravity(self) -> Floats:
+        """Force per mass (2,)."""
+        return self.g * np.array([sin(radians(self.theta)), -cos(radians(self.theta))])
+
+    @property
+    def slope(self) -> float:
+        """Tangent of the angle, the friction from which on a block sticks."""
+        return tan(radians(self.theta))
+
+    @property
+    def sliding(self) -> float:
+        """Acceleration of what slides, g (sin - mu cos)."""
+        return float(self.gravity[0] + self.mu * self.gravity[1])
+
+    def setup(self, run: Run, layout: Layout, dx: float, travel: float, duration: float, friction: float) -> Setup:
+        """Body with a grid for its travel and a floor of some friction, from rest."""
+        material, basis = create(MATERIALS, run.material), create(METHODS, run.method)
+        low, high = layout.corners.min(axis=(0, 1)), layout.corners.max(axis=(0, 1))
+        left = dx * (np.floor(low[0] / dx) - ROOM)
+        across, up = ceil((high[0] + travel - left) / dx) + ROOM, ceil(high[1] / dx) + ROOM
+        grid = Grid(dx, np.array([left, 0.0]), np.array([left + across * dx, up * dx]))
+        particles = basis.populate(layout, material.rho0)
+        particles.b[:] = self.gravity
+        steps = ceil(duration / (run.courant * dx / material.wave_speed()) * (1 - 1e-12))
+        model = Model(
+            grid, particles, basis, material, frictional(grid, ("free", "free", friction, "free")), duration / steps,
+            Scheme(create(TRANSFERS, run.transfer), STRESS.get(split(run.method)[0], "usl")), None,
+            None if run.smoothing == "none" else create(SMOOTHINGS, run.smoothing),
+        )  # fmt: skip
+        return Setup(model, steps, Motion(self, model), leave)
+
+
+def leave(particles: object, t: float) -> None:
+    """Leave the body force as it is: gravity is constant, and travels with the particles."""
+
+
+class Motion(Watch):
+    """Watch of the mean shift, velocity and turn of a body after each step.
+
+    Attributes
+    ----------
+    rows
+        Time, shift (2), velocity (2), angular velocity, (T,6).
+    """
+
+    def __init__(self, plane: Incline, model: Model) -> None:
+        self.plane, self.kept = plane, [self.look(model)]
+
+    def look(self, model: Model) -> tuple[float, ...]:
+        """Time, centre of mass, its velocity, and the angular velocity to the right, spin over moment of inertia."""
+        p = model.particles
+        whole, m = float(p.m.sum()), p.m[:, None]
+        x, v = (m * p.x).sum(axis=0) / whole, (m * p.v).sum(axis=0) / whole
+        r, w = p.x - x, p.v - v
+        spin = float((p.m * (r[:, 1] * w[:, 0] - r[:, 0] * w[:, 1])).sum())
+        return model.time, *x, *v, spin / float((p.m * (r**2).sum(axis=1)).sum())
+
+    def after_step(self, model: Model) -> None:
+        """Keep the motion."""
+        self.kept.append(self.look(model))
+
+    @property
+    def rows(self) -> Floats:
+        """Motion from the start on."""
+        rows = np.array(self.kept)
+        rows[:, 1:3] -= rows[0, 1:3]
+        return rows
+
+    def excess(self) -> float:
+        """Tangential impulse of the floor less mu times its normal one, over the weight's: the most at any time."""
+        rows = self.rows
+        t, given = rows[:, 0], rows[:, 3:5] - self.plane.gravity * rows[:, :1]
+        return float((np.abs(given[:, 0]) - self.plane.mu * given[:, 1]).max() / (self.plane.g * t[-1]))
+
+    def measured(self, values: dict[str, float], figures: dict[str, tuple[Floats, float]]) -> Measured:
+        """Values and friction, and figures by name: what was moved (T,), and with which acceleration it should be."""
+        t, curves = self.rows[:, 0], {}
+        fine, some = np.linspace(0.0, t[-1], MOST), slice(None, None, -(-len(t) // MOST))
+        for name, (moved, acceleration) in figures.items():
+            curves[name, "run"] = np.stack([t[some], moved[some]])
+            curves[name, EXACT] = np.stack([fine, 0.5 * acceleration * fine**2])
+        return Measured({}, values | {"excess_friction": self.excess()}, curves)

@@ -1,0 +1,197 @@
+"""Walls with friction: bodies that slide, stick and leave on a grid that is a wall everywhere, and a step beside two.
+
+Where each node is a wall a body moves as one, as a rigid block on a plane does: no stress is needed to carry the
+reaction up to it. So its velocity is known after each step, with every basis, transfer and stress update.
+"""
+
+from copy import copy
+from dataclasses import dataclass, field
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mpm_verify.cases.exact.body import DX, FILLED, Subject, Variant, by_id, grid, layout, modelled, populated, shaken
+from mpm_verify.cases.exact.body import variants as every
+from mpm_verify.cases.exact.dense import Dense, Sigma, Weights
+from mpm_verify.cases.exact.motion import still
+from mpm_verify.cases.exact.step import KNOWN
+from mpm_verify.cases.exact.symmetry import moved
+from mpm_verify.mms.constitutive.driver import random
+from mpm_verify.mms.constitutive.tested import Pairs, Part, Reason, Tested, attempt, bound, farthest, not_asked, off
+from mpm_verify.solver.boundary import Walls, box
+from mpm_verify.solver.energy_budget import Budget, kinetic, residual
+from mpm_verify.solver.friction import FrictionalWalls, Sides
+from mpm_verify.solver.state import Floats
+from mpm_verify.solver.step import advance
+
+MU, PRESSED = 0.4, 0.02  # friction coefficient, and the force into the wall over c / dt
+SIDES: Sides = (0.3, "free", 0.5, "free")
+TURNED: dict[str, Sides] = {"mirror": ("free", 0.3, 0.5, "free"), "quarter_turn": ("free", 0.5, 0.3, "free")}
+STEPS = 4
+# Axis of the normal, tangential over normal force, velocity at first over c: two go faster, two come to rest.
+SLIDES = ((0, 0.7, 0.3), (1, -0.7, -0.3), (1, 0.1, 0.02), (0, 0.1, -0.02))
+
+
+def tests(subject: Subject) -> list[Tested]:
+    """Every transfer and stress update in each test."""
+    found: list[Tested] = []
+    for variant in every():
+        for name, ask in (("friction_slide", slide), ("friction_stick", stick), ("friction_leave", leave)):
+            found += attempt(f"{name} {variant}", Part.FRICTION, partial(ask, subject, variant))
+        found += attempt(f"friction_budget {variant}", Part.FRICTION, partial(budget, subject, variant))
+        found += attempt(f"friction_mirror {variant}", Part.FRICTION, partial(turned, subject, variant))
+        if variant.transfer in KNOWN:
+            found += attempt(f"friction_step {variant}", Part.FRICTION, partial(formulas, subject, variant))
+    return found
+
+
+def everywhere(axis: int) -> FrictionalWalls:
+    """Friction at every node; the normal of the wall is on an axis."""
+    plain, normal = box(grid(), "free"), np.zeros(grid().nodes.shape)
+    normal[:, axis] = 1.0
+    return FrictionalWalls(plain.held.copy(), plain.value.copy(), plain.rate.copy(), plain, normal, MU * normal)
+
+
+def carry(
+    subject: Subject, variant: Variant, axis: int, pull: float, press: tuple[float, ...], v: float
+) -> tuple[Floats, float]:
+    """Tangential and normal shifts and velocities (P,4) after some steps, and what F and sigma changed by.
+
+    `pull` is the tangential and `press` the normal force per mass of each step, times dt over c; `v` is the tangential
+    velocity at first over c.
+    """
+    p = populated(subject, layout(), np.eye(2))
+    p.v[:, 1 - axis] = v * subject.speed
+    model = modelled(subject, p, variant, everywhere(axis))
+    force, x = np.zeros(2), by_id(p, "x")
+    force[1 - axis] = pull * subject.speed / model.dt
+    for one in press:
+        force[axis] = -one * subject.speed / model.dt
+        advance(model, lambda particles, t: np.copyto(particles.b, np.broadcast_to(force, particles.b.shape)))
+    columns = [1 - axis, axis]
+    moves = (by_id(model.particles, "x") - x)[:, columns] / DX
+    return np.hstack([moves, by_id(model.particles, "v")[:, columns] / subject.speed]), still(subject, model)
+
+
+def slide(subject: Subject, variant: Variant) -> Tested:
+    """Body that slides: it goes faster by g_t - mu g_n, or slows down, turns round and sticks where |g_t| < mu g_n."""
+    worst = 0.0
+    for axis, part, v in SLIDES:
+        rows, other = carry(subject, variant, axis, part * PRESSED, STEPS * (PRESSED,), v)
+        moved, speed = 0.0, v
+        for _ in range(STEPS):
+            speed += part * PRESSED
+            speed -= np.copysign(min(abs(speed), MU * PRESSED), speed)
+            moved += subject.dt * subject.speed / DX * speed
+        worst = max(worst, off(rows, np.array([moved, 0.0, speed, 0.0]), 1.0), other)
+    return Tested(f"friction_slide {variant}", worst, bound(2 * STEPS * subject.support), Part.FRICTION)
+
+
+def stick(subject: Subject, variant: Variant) -> Tested:
+    """Body at rest under a tangential force of 0.99 mu g_n: it does not move, to the last bit."""
+    rows, _ = carry(subject, variant, 1, 0.99 * MU * PRESSED, STEPS * (PRESSED,), 0.0)
+    return Tested(f"friction_stick {variant}", off(rows, 0.0, 1.0), 0.0, Part.FRICTION)
+
+
+def leave(subject: Subject, variant: Variant) -> Tested:
+    """Body that is pressed for two steps and then torn off the wall: nothing holds it, and nothing rubs, any more."""
+    press = np.array([1.0, 1.0, -1.0, -1.0]) * PRESSED
+    rows, other = carry(subject, variant, 1, PRESSED, tuple(press), 0.3)
+    gained = np.stack([PRESSED - MU * np.maximum(press, 0.0), np.maximum(-press, 0.0)], axis=1)
+    speeds = np.array([0.3, 0.0]) + np.cumsum(gained, axis=0)
+    moved = subject.dt * subject.speed / DX * speeds.sum(axis=0)
+    worst = max(off(rows, np.concatenate([moved, speeds[-1]]), 1.0), other)
+    return Tested(f"friction_leave {variant}", worst, bound(2 * STEPS * subject.support), Part.FRICTION)
+
+
+def budget(subject: Subject, variant: Variant) -> list[Tested]:
+    """Energies of a body that strikes a floor with friction add up; and the momentum of a step in which all slides.
+
+    Of the tangential momentum friction takes mu times the normal one that the floor gives.
+    """
+    names = f"friction_budget {variant}", f"friction_momentum {variant}"
+    p = populated(subject, layout(filled=True), np.eye(2))
+    p.v[:] = subject.speed * (0.02 * random(len(p), 2) + [0.5, -0.2])
+    model = modelled(subject, p, variant, ("free", "free", MU, "free"), FILLED)
+    g, m = np.array([0.05, -0.1]) * subject.speed**2 / DX, p.m.copy()
+    known = Budget(g, kinetic(p))
+    model.watch(known)
+    rows, momentum = [known.terms(model)], [(m[:, None] * p.v).sum(axis=0)]
+    for _ in range(2):
+        advance(model, lambda particles, t: np.copyto(particles.b, np.broadcast_to(g, particles.b.shape)))
+        rows.append(known.terms(model))
+        momentum.append((model.particles.m[:, None] * model.particles.v).sum(axis=0))
+    given = momentum[1] - momentum[0] - m.sum() * g * model.dt
+    scale, most = float(m.sum()) * subject.speed, bound(4 * subject.support)
+    found = []
+    if variant.scheme.transfer.filters_walls:
+        found.append(not_asked(names[1], Part.FRICTION, Reason.BUDGET))
+    else:
+        found.append(Tested(names[1], off(given[0], -MU * given[1], scale), most, Part.FRICTION))
+    if subject.material.rate is None or variant.stress != "usl" or variant.scheme.transfer.filters_walls:
+        reason = Reason.NO_RATE_FORM if subject.material.rate is None else Reason.BUDGET
+        return [*found, not_asked(names[0], Part.FRICTION, reason)]
+    energy = max(map(abs, rows[0].values()))
+    worst = max(off(residual(row, rows[0]), 0.0, energy) for row in rows)
+    return [*found, Tested(names[0], worst, most, Part.FRICTION)]
+
+
+def turned(subject: Subject, variant: Variant) -> Tested:
+    """Body beside two walls with friction, as it is, mirrored and turned."""
+    both = moved(subject, variant, SIDES, TURNED)
+    worst = max(both, key=lambda one: one.residual)
+    return Tested(f"friction_mirror {variant}", worst.residual, worst.bound, Part.FRICTION, worst.reason)
+
+
+def formulas(subject: Subject, variant: Variant) -> Tested:
+    """Step of random v, F, sigma and b in the corner of two walls with friction, against full matrices of weights."""
+    p = shaken(subject, populated(subject, layout(filled=True), np.eye(2)))
+    model = modelled(subject, p, variant, SIDES, FILLED)
+    b, order, dense = by_id(model.particles, "b"), model.particles.id.copy(), Rubbed(copy(model), variant.flip)
+    dense.model.walls = Known(grid(FILLED).nodes)
+    expected = dense.step(model.particles.b.copy(), Sigma(model))
+    advance(model, lambda particles, t: np.copyto(particles.b, b[particles.id]))
+    rows, q = np.argsort(order), model.particles
+    pairs: Pairs = [
+        (by_id(q, "x"), expected.x[rows], DX),
+        (by_id(q, "v"), expected.v[rows], subject.speed),
+        (by_id(q, "F"), expected.F[rows], 1.0),
+        (by_id(q, "sigma"), expected.sigma[rows], subject.stress),
+    ]
+    return Tested(f"friction_step {variant}", farthest(pairs), bound(4 * subject.support), Part.FRICTION)
+
+
+class Known(Walls):
+    """Walls of a step whose friction is written out below: a left one and a floor, of SIDES."""
+
+    def __init__(self, nodes: Floats) -> None:
+        super().__init__(np.zeros(nodes.shape, bool), np.zeros(nodes.shape), np.zeros(nodes.shape), stops=True)
+        self.near = nodes < 1e-9 * DX  # left wall, floor
+        self.strains = self.near.copy()
+
+    def in_strain(self) -> tuple[NDArray[np.bool_], Floats, Floats]:
+        """Components that have the wall's velocity."""
+        return self.strains, np.zeros(self.held.shape), self.rate
+
+
+@dataclass(frozen=True)
+class Rubbed(Dense):
+    """Formulas of a step beside walls with friction."""
+
+    touches: dict[str, float] = field(default_factory=dict)
+
+    def motion(self, w: Weights, momentum: Floats, force: Floats) -> tuple[Floats, Floats]:
+        """Velocity and acceleration of the nodes (n,2) at the end of the step, and what sticks, slips or leaves."""
+        walls = self.model.walls
+        assert isinstance(walls, Known)
+        v = self.over_mass(w, momentum) + self.model.dt * self.over_mass(w, force)
+        touches = walls.near & (v < 0)
+        alone = touches & ~touches[:, ::-1]
+        most = np.where(alone, -v * [SIDES[0], SIDES[2]], 0.0)[:, ::-1]  # of the other component
+        other = alone[:, ::-1]
+        sticks = other & (np.abs(v) <= most)
+        walls.held[:] = touches | other
+        walls.strains[:] = touches | sticks
+        walls.value[:] = np.where(other & ~sticks, np.sign(v) * (np.abs(v) - most), 0.0)
+        return super().motion(w, momentum, force)
