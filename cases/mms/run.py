@@ -229,7 +229,7 @@ class Run(RunRecord):
         return self.dim == 3 and name in available(SOLUTIONS) and getattr(load(SOLUTIONS, name), "coordinates", 2) == 3
 
     def __str__(self) -> str:
-        name = self.solver.split()[0] if self.solver else label(self.method)
+        name = label(self.method)
         power, thick = "³" if self.solid else "²", ", one cell thick" if self.dim == 3 and not self.solid else ""
         return f"{name} {self.cells}{power} cells, {self.ppc} per cell{thick}"
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from mpm_verify.cases.harness.checks import Check
 from mpm_verify.reports import words
+from mpm_verify.reports.components.logs import failed
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences import failures
 
@@ -16,6 +17,7 @@ def show(record: Record, page: Path | None, lead: str = "") -> None:
     from rich.table import Table
     from rich.text import Text
 
+    from mpm_verify.verify.terminal import logs
     from mpm_verify.verify.terminal.table import STYLES, Listened, where
 
     out = Listened(highlight=False, soft_wrap=False)
@@ -37,6 +39,7 @@ def show(record: Record, page: Path | None, lead: str = "") -> None:
     for check in every:
         if check.outcome != "PASS":
             out.print(Text.assemble((str(check.outcome), STYLES[check.outcome]), f" {check.group}: {sentence(check)}"))
+    logs.show(out, failed(record))
     if lead:
         out.print(Text(f"\n{lead}"))
     where(out, page)

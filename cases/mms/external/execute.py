@@ -36,8 +36,8 @@ def execute(run: Run, tick: Callable[[float], None] = lambda fraction: None) -> 
         found = compare(exact, X, case.particles["V0"], dt, answer.frames, answer.told)
         why = hints(exact, case, answer.frames, answer.told)
     result, numbers = result_of(run, case, found, answer.failure), answer.told.numbers
-    return replace(result, wall_s=answer.wall_s, log=answer.log, exit_code=answer.exit_code,
-                   told=answer.told.version, values=why | numbers), {}  # fmt: skip
+    return replace(result, wall_s=answer.wall_s, log=answer.log.lines, exit_code=answer.exit_code,
+                   told=answer.told.version, values=why | numbers), answer.log.kept  # fmt: skip
 
 
 def answered(run: Run, case: Exported, tick: Callable[[float], None] = lambda fraction: None) -> Answer:
