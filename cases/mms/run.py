@@ -259,6 +259,11 @@ class Result(ResultRecord[Run]):
     exit_code: int | None = None  # of that solver
     told: str = ""  # version that its result.json states
 
+    @property
+    def still(self) -> bool:
+        """Whether nothing moves in an answer of somebody else's solver."""
+        return "still" in self.values
+
     def __post_init__(self) -> None:
         if self.run.solver:
             super().__post_init__()

@@ -8,7 +8,9 @@ from mpm_verify.reports.sentences.numbers import percent
 HINTS = {  # in the order in which they are said
     "id_and_X": "id and X, Y name different particles for {percent} of the rows; they fit by X, Y, and id was taken.",
     "permuted": "Particles fit when they are matched by position: {percent} of the rows have the id of another one.",
-    "still": "The displacement is {value:.1g} of the exact one: nothing moves; is the force added to the motion?",
+    "still": "Errors equal u: nothing moves; is the force added to the motion, and are new positions written?",
+    "unmoved": "No position changes in the digits that are written; the last of them is {value:.2g} times the exact "
+    "displacement. Nothing moves, or it moves and that cannot be seen: write 17 digits.",
     "x_is_u": "x fits when X is added to it: write positions, not displacements.",
     "wall_in": "In the cells next to the walls particles move {value:.2f} of what they should: "
     "are nodes held that lie one node inside the body?",

@@ -17,6 +17,7 @@ BETTER = 0.5  # factor on an error that is no accident
 CLEAR = 0.1  # factor on the error of particles in another order
 SCALED, ROUNDED = 0.35, 0.05  # factor on the error, and change, of another length of a step
 STILL = 1e-3  # of the exact displacement: nothing has moved
+HALF, SHOWN = 0.51, 1.5  # last digits: the most that rounding moves a number, and a motion that changes it
 HELD = 0.2  # of the exact displacement: a layer of particles that a wall holds
 SHIFTS = (-3, -2, -1, 1, 2, 3)  # steps
 FACTOR, LEFT = 0.1, 0.12  # from 1, and of the balance, of a factor on force or stress that is told
@@ -66,9 +67,21 @@ def order(e: Evidence) -> dict[str, float]:
 
 
 def still(e: Evidence) -> dict[str, float]:
-    """Displacement over the exact one, where nothing moves."""
-    part = rms(e.u[1:]) / rms(e.u_exact[1:])
-    return {"still": part} if part <= STILL else {}
+    """Displacement from the start over the exact one, where nothing moves.
+
+    Where no number changes, and the exact ones do not in as many digits either, nobody can tell: that is `unmoved`,
+    the last digits over the exact displacement.
+    """
+    start = e.start
+    moved, exact = e.given("x") - start, e.X + e.u_exact[1:] - start
+    if not exact.any():
+        return {}
+    last, part = e.last_digits, rms(moved) / rms(exact)
+    if part > STILL and np.any(np.abs(moved) > HALF * last):
+        return {}
+    if np.sum(np.abs(exact) > SHOWN * last) >= MANY:
+        return {"still": part}
+    return {"unmoved": rms(last) / rms(exact)}
 
 
 def displacements(e: Evidence) -> dict[str, float]:
