@@ -148,19 +148,19 @@ def at_walls(e: Evidence) -> dict[str, float]:
 def forces(tried: dict[str, Tried], steps: int) -> tuple[dict[str, float], float]:
     """Cause that explains most of what is left of the momentum balance, if more than half, and what it leaves of it."""
     factors = {name: tried[name] for name in ("force_factor", "stress_factor")}
-    name = min(factors, key=lambda name: factors[name].left)
+    factor = min(factors, key=lambda name: factors[name].left)
     of_F = tried.get("stress_of_F")
-    if factors[name].left < LEFT and abs(factors[name].value) > FACTOR:
-        explained = name == "stress_factor" and of_F is not None and of_F.left < LEFT and abs(of_F.value - 1) < NEARLY
-        return {"stress_of_F" if explained else name: 1 + factors[name].value}, factors[name].left
-    x = tried["force_at_x"]
-    if x.left < BETTER and abs(x.value - 1) < NEARLY:
-        return {"force_at_x": x.value}, x.left
+    if factors[factor].left < LEFT and abs(factors[factor].value) > FACTOR:
+        explained = factor == "stress_factor" and of_F is not None and of_F.left < LEFT and abs(of_F.value - 1) < NEARLY
+        return {"stress_of_F" if explained else factor: 1 + factors[factor].value}, factors[factor].left
+    for name in ("force_swapped", "force_at_x"):
+        if tried[name].left < BETTER and abs(tried[name].value - 1) < NEARLY:
+            return {name: tried[name].value}, tried[name].left
     least = {"viscous": LOST, "force_lag": LATE, "stress_lag": LATE, "damped": DAMPED / steps}
     fits = {key: tried[key] for key in least if tried[key].left < BETTER and abs(tried[key].value) > least[key]}
     fits = {key: fit for key, fit in fits.items() if fit.value > 0 or key.endswith("_lag")}
     best = min((fit.left for fit in fits.values()), default=1.0)
-    if factors[name].left < best:  # a factor so near 1 that a coarse grid makes it explains more
+    if factors[factor].left < best:  # a factor so near 1 that a coarse grid makes it explains more
         return {}, 1.0
     return next((({key: fit.value}, fit.left) for key, fit in fits.items() if fit.left <= TIE * best), ({}, 1.0))
 
