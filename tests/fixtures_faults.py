@@ -65,6 +65,7 @@ FAULTS: dict[str, Change] = {
     "force of the other sign": force("-1"),
     "force a fifth too large": force("1.2"),
     "force at x": ((FORCE, FORCE.replace("(X,", "(x,")),),
+    "components of the force exchanged": ((FORCE, f"{FORCE}[:, ::-1]"),),
     "force one step late": ((FORCE, FORCE.replace("(step - 1)", "(step - 2)")),),
     "stress twice as large": ((VOLUMES, f"{VOLUMES} * 2"),),
     "FLIP ratio ignored (PIC)": ((VELOCITY, VELOCITY.replace("+= dt *", "=").replace("acceleration", "velocity")),),

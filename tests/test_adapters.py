@@ -84,7 +84,7 @@ def test_stored_results_are_those_of_the_studies(scripts: tuple[Any, Any]) -> No
         assert len(found.get("reference", [])) == (len(one["cells"]) if "reference" in one else 0)
         assert (ADAPTERS / one["code"] / one.get("script", "adapter.py")).is_file()
     assert {path.stem for path in study.RESULTS.glob("*.json")} == {
-        *study.studies(), "kratos_smallest", "newton_smallest", "sparkl_smallest",
+        *study.studies(), *study.COMPARED, "kratos_smallest", "newton_smallest", "sparkl_smallest",
     }  # fmt: skip
     assert page.level("kratos_usl", 8) == "7.253e-8"
     assert page.digits(page.stored("kratos_usl")) == "all 7"
@@ -172,6 +172,27 @@ def test_the_tiny_solver_without_spin_gives_what_is_stored(
     assert found == pytest.approx(page.stored("tiny_symmetric")["runs"][0]["u"], rel=1e-6)
     assert found == pytest.approx(page.stored("kratos_usl_large")["runs"][0]["u"], rel=1e-4)
     assert abs(found / page.stored("kratos_usl_large")["reference"][0] - 1) > 0.01
+
+
+def test_a_comparison_says_where_a_code_parts_from_the_reference(scripts: tuple[Any, Any]) -> None:
+    """In the second digit of u: 7.608e-3 where hats have 7.501e-3."""
+    study, page = scripts
+    (found,) = (page.stored(name) for name in study.COMPARED)
+    assert found["outcome"] == "parts"
+    assert {one["quantity"]: (one["frame"], one["particle"]) for one in found["partings"]} == {
+        "u": (1, 153),
+        "v": (1, 153),
+    }
+    assert all(sentence in page.page() for sentence in found["sentences"])
+
+
+@pytest.mark.slow
+def test_a_comparison_gives_what_is_stored(scripts: tuple[Any, Any], monkeypatch: pytest.MonkeyPatch) -> None:
+    study, page = scripts
+    needs("kratos")
+    monkeypatch.chdir(TOP)
+    for name in study.COMPARED:
+        assert study.compared(name, PYTHON)["partings"] == page.stored(name)["partings"]
 
 
 @pytest.mark.slow

@@ -381,6 +381,26 @@ def test_the_examples_have_the_digits_of_other_programs(
     assert code == 0
 
 
+FINEST = {"clamped_shear:G=1e-6": (64, 1.099e-9)}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("language", ["python", "cpp"])
+def test_the_finest_level_has_the_digits_of_other_programs(verify: Call, tmp_path: Path, language: str) -> None:
+    """7.253e-8 to 1.099e-9 over 8 to 64 cells: the last of them; orders 2.02 2.02 2.01 with those above."""
+    if (needed := NEEDS[language]) and shutil.which(needed) is None:
+        pytest.skip(f"{needed} is not there")
+    ((solution, (cells, known)),) = FINEST.items()
+    _, out, _ = verify("example", language, "toy")
+    typed = out.partition("--solver '")[2].partition("'")[0].replace("python ", f"{sys.executable} ")
+    axes = ["--cells", str(cells), "--courant", "0.4", "--time-step", "h", "--order", "0"]
+    _, out, _ = verify("mms", "--solver", typed, "--solution", solution, *axes, "--out", "study", "--json")
+    (run,) = [run for run in json.loads(out)["runs"] if run["courant"] == 0.4]
+    assert float(f"{run['errors']['u']['rms']:.3e}") == known
+    coarser = DIGITS[solution][-1] or 0.0
+    assert np.log2(coarser / run["errors"]["u"]["rms"]) == pytest.approx(2.01, abs=0.01)
+
+
 # ---- hints
 
 STEP = 2e-4  # so long that a step is seen
@@ -419,6 +439,14 @@ def test_a_fault_is_hinted_at(name: str) -> None:
     assert set(found) == {name}
     assert found[name] < 0.5 if value == HALVED else found[name] == pytest.approx(value, abs=1e-9)
     assert own_solver.hint(name, value)
+
+
+def test_a_time_step_that_is_rounded_is_told_by_its_length() -> None:
+    """Positions of 1.01 times their time, where the error of the grid does not hide it."""
+    found = hints(EXACT, GIVEN, frames_of(lambda step: {"x": EXACT.x(X, 1.01 * step * STEP)}), USUAL)
+    assert set(found) == {"time_scale"}
+    assert found["time_scale"] == pytest.approx(1.01, abs=2e-4)
+    assert "is dt rounded" in own_solver.hint("time_scale", found["time_scale"])
 
 
 def test_no_fault_is_hinted_at_where_there_is_none() -> None:

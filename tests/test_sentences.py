@@ -54,6 +54,7 @@ class Example:
     failed: tuple[Failure | None, ...] = ()
     halved: float | None = 1.01
     floor: float = 1e-15
+    still: bool = False
 
 
 def clean(order: float = 2.0, count: int = 5) -> tuple[float, ...]:
@@ -75,6 +76,7 @@ EXAMPLES = {
     ReasonCode.CONTAMINATED: Example(tuple((H**2 + 0.08 * H).tolist()), Expectation(2.0, 1.9, 0.3)),
     ReasonCode.MAGNITUDE: Example(clean(), known(1 / 128, 2)),
     ReasonCode.FAR_OFF: Example(clean(), known(1 / 256, 0.4)),
+    ReasonCode.NOTHING_MOVES: Example(clean(), still=True),
     ReasonCode.RUN_ENDED: Example(clean(count=4), SECOND, (INVERTED,)),
     ReasonCode.FALLS_SHORT: Example((4.8e-3, 6.7e-3, 1.4e-2, 2.6e-2)),
     ReasonCode.CONVERGES: Example(clean(), DIVERGES),
@@ -115,6 +117,7 @@ def made(example: Example) -> tuple[Study[Run], dict[str, Result]]:
         if end:
             ended = result(run, 0.0, 0.0)
             results.append(replace(ended, status="failed", errors={}, failure=end))
+    results = [replace(one, values={"still": 0.0} if example.still else {}) for one in results]
     plan = QuantityPlan(runs[0], "u", "rms", True, example.expectation)
     study = Study("made", "made", "verify mms --ppc 4", (*runs, half), (plan,), case="mms")
     return study, {one.digest: one for one in results}

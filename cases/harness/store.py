@@ -3,6 +3,7 @@
 DIR/study.json           the Study
 DIR/runs/<digest>.json   a Result
 DIR/runs/<digest>.npz    its arrays, see the case
+DIR/runs/<digest>.log    what a solver of somebody else printed
 """
 
 import fcntl
@@ -96,11 +97,17 @@ class Store:
     def put(self, result: Any, arrays: Arrays) -> None:
         """Write arrays, then the Result: the JSON file is what makes a run stored.
 
+        A text among the arrays is a file of its own, with its name as the ending.
+
         Raises ValueError, and writes nothing, for what could not be read again.
         """
         path, text = self.runs / result.digest, self._text(result, adapters(self.case)[1])
+        texts = {name: found for name, found in arrays.items() if isinstance(found, str)}
         buffer = io.BytesIO()
-        np.savez(buffer, allow_pickle=False, **arrays)
+        np.savez(buffer, allow_pickle=False, **{name: found for name, found in arrays.items() if name not in texts})
+        path.with_suffix(".log").unlink(missing_ok=True)  # of the run before, where it failed
+        for name, found in texts.items():
+            self.write(path.with_suffix(f".{name}"), found.encode(errors="replace"))
         self.write(path.with_suffix(".npz"), buffer.getvalue())
         self.write(path.with_suffix(".json"), text)
 
@@ -114,6 +121,11 @@ class Store:
         except ValidationError as error:
             raise ValueError(f"{type(record).__name__} cannot be stored: {invalid(error)}") from None
         return text
+
+    def log(self, digest: str) -> Path | None:
+        """File of what a solver of somebody else printed in that run, if it printed anything."""
+        path = self.runs / f"{digest}.log"
+        return path if path.is_file() else None
 
     def get(self, digest: str) -> Any:
         """Stored Result of that digest, None if the run is still to be done."""

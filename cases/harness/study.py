@@ -195,6 +195,11 @@ class ResultRecord(Generic[R]):
             raise ValueError("a finished run has errors that are finite and not negative")
 
     @property
+    def still(self) -> bool:
+        """Whether nothing moves in an answer of somebody else's solver."""
+        return False
+
+    @property
     def updates(self) -> int:
         """Particle updates: particles times steps."""
         return self.particles * self.steps

@@ -77,9 +77,17 @@ def _quantity(plan: QuantityPlan[Any], series: Series | None, results: Results) 
     if series is None:
         return Quantity([], expectation, 0.0, None)
     levels = [Level(1 / runs[0].cells, *level(runs, results, plan.quantity, plan.norm)) for runs in series.replicates]
-    floors = [r.floor.get(plan.quantity, 0.0) for run in series.runs if (r := results.get(run.digest))]
     half = error(series.halved, results, plan.quantity, plan.norm) if series.halved else None
-    return Quantity(levels, expectation, max(floors, default=0.0), half, plan.multiple)
+    still = plan.quantity == "u" and any(r.still for run in series.runs if (r := results.get(run.digest)))
+    return Quantity(levels, expectation, _floor(plan.quantity, series, results), half, plan.multiple, still)
+
+
+def _floor(quantity: str, series: Series, results: Results) -> float:
+    """Round-off floor of the finest cells that have one, where errors are least and steps most."""
+    floors = [(run.cells, r.floor[quantity]) for run in series.runs
+              if (r := results.get(run.digest)) and quantity in r.floor]  # fmt: skip
+    finest = max((cells for cells, _ in floors), default=0)
+    return max((floor for cells, floor in floors if cells == finest), default=0.0)
 
 
 def _with_stalls(found: Sequence[Finding], known: Mapping[Head, Series], results: Results) -> list[Finding]:

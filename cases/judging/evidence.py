@@ -21,6 +21,8 @@ def evidence(q: Quantity) -> Reason | None:
 
     Recorded errors are those of the runs with the particles at their usual positions.
     """
+    if q.still:
+        return Reason(ReasonCode.NOTHING_MOVES)
     return _magnitude(q) or (None if q.expectation.order is None else _ended(q))
 
 

@@ -23,6 +23,8 @@ class Quantity:
     ----------
     levels, expectation, floor, dt_halved, multiple
         See `order.judge`.
+    still
+        Whether nothing moves in a run.
 
     Raises
     ------
@@ -35,6 +37,7 @@ class Quantity:
     floor: float
     dt_halved: float | None
     multiple: int = 1
+    still: bool = False
 
     def __post_init__(self) -> None:
         if len({level.h for level in self.levels}) < len(self.levels):

@@ -156,6 +156,7 @@ class ReasonCode(StrEnum):
     CONTAMINATED = "contaminated"  # FAIL [lower, floor, error: the finest; least of a tail, or most, squared]
     MAGNITUDE = "magnitude"  # FAIL [h, ratio, within]
     FAR_OFF = "far_off"  # FAIL: more than FAR times the recorded error, carried over [h, ratio, recorded_h]
+    NOTHING_MOVES = "nothing_moves"  # FAIL: the error of u is u itself
     RUN_ENDED = "run_ended"  # FAIL: particles were inverted or left the grid, where an order is expected
     FALLS_SHORT = "falls_short"  # FAIL: both finest local orders [first, last, band_low; flat, of a floor]
     CONVERGES = "converges"  # FAIL: not expected [h_0, error_0, h_1, error_1, order]

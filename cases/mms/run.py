@@ -252,7 +252,7 @@ class Run(RunRecord):
         return self.dim == 3 and name in available(SOLUTIONS) and getattr(load(SOLUTIONS, name), "coordinates", 2) == 3
 
     def __str__(self) -> str:
-        name = self.solver.split()[0] if self.solver else label(self.method)
+        name = label(self.method)
         thick = ", one cell thick" if self.dim == 3 and not self.solid else ""
         power = "³" if self.solid else "²" if self.dim > 1 else ""
         return f"{name} {self.cells}{power} cells, {self.ppc} per cell{thick}"
@@ -282,6 +282,11 @@ class Result(ResultRecord[Run]):
     log: tuple[str, ...] = ()  # last lines that a solver of somebody else printed
     exit_code: int | None = None  # of that solver
     told: str = ""  # version that its result.json states
+
+    @property
+    def still(self) -> bool:
+        """Whether nothing moves in an answer of somebody else's solver."""
+        return "still" in self.values
 
     def __post_init__(self) -> None:
         if self.run.solver:

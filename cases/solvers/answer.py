@@ -7,13 +7,15 @@ time level a field has.
 """
 
 from dataclasses import dataclass, field
+from functools import cached_property
+from math import sqrt
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from mpm_verify.cases.solvers.components import QUANTITIES
-from mpm_verify.cases.solvers.digits import rounding
+from mpm_verify.cases.solvers.digits import last_digits, rounding
 from mpm_verify.cases.solvers.matching import matched
 from mpm_verify.cases.solvers.precision import single
 from mpm_verify.cases.solvers.readers import ENDINGS, table
@@ -27,21 +29,33 @@ class Frame:
 
     In axisymmetry F is (P,5), see `around`.
 
-    Rows are in the order of the case.
-
-    `resolution` is the rounding of the numbers in the file by quantity, standard deviation in their units.
+    Rows are in the order of the case. `last` are the values of the last digits of the numbers in the file, as `fields`.
+    Where nothing `moves` those of x tell of the start, and not of the digits that are written.
     """
 
     fields: dict[str, Floats]
-    resolution: dict[str, float] = field(default_factory=dict)
+    last: dict[str, Floats] = field(default_factory=dict)
+    moves: bool = True
+
+    @cached_property
+    def resolution(self) -> dict[str, float]:
+        """Rounding of the numbers in the file by quantity, standard deviation in their units."""
+        told = {name: last for name, last in self.last.items() if name != "x" or self.moves}
+        return {name: sqrt(sum(rounding(one) ** 2 for one in last.T)) for name, last in told.items()}
 
 
 def around(frame: Frame) -> Frame:
     """Frame of an axisymmetric case: F has the hoop stretch as its fifth component, and is not there without it."""
-    kept = {name: values for name, values in frame.fields.items() if name not in ("F", "Fzz")}
-    if frame.fields.keys() >= {"F", "Fzz"}:
-        kept["F"] = np.hstack([frame.fields["F"], frame.fields["Fzz"]])
-    return Frame(kept, frame.resolution)
+    kept, last = (_with_hoop(columns) for columns in (frame.fields, frame.last))
+    return Frame(kept, last, frame.moves)
+
+
+def _with_hoop(columns: dict[str, Floats]) -> dict[str, Floats]:
+    """Columns with F (P,5) of F and Fzz, and without both where one is missing."""
+    kept = {name: values for name, values in columns.items() if name not in ("F", "Fzz")}
+    if columns.keys() >= {"F", "Fzz"}:
+        kept["F"] = np.hstack([columns["F"], columns["Fzz"]])
+    return kept
 
 
 def read(out: Path, step: int, X: Floats, spacing: float) -> Frame:
@@ -75,13 +89,13 @@ def read(out: Path, step: int, X: Floats, spacing: float) -> Frame:
 
 
 def framed(
-    columns: dict[str, Any], X: Floats, spacing: float, file: str, step: int, digits: dict[str, float] | None = None
+    columns: dict[str, Any], X: Floats, spacing: float, file: str, step: int, last: dict[str, Floats] | None = None
 ) -> Frame:
-    """Frame of columns, in the order of X (P,d), whose rounding is `digits` or told as they are. Raises RunFailed."""
+    """Frame of columns, in the order of X (P,d), with these last digits or those that they show. Raises RunFailed."""
     quantities = QUANTITIES[X.shape[1]]
     try:
         numbers = {name: np.asarray(values, dtype=np.float64) for name, values in columns.items()}
-        resolution = rounding(columns) if digits is None else digits
+        last = last_digits(columns) if last is None else last
     except (ValueError, TypeError):
         raise RunFailed(FailureKind.UNREADABLE, step, names={"file": file}) from None
     if len({len(values) for values in numbers.values()}) > 1 or not numbers:
@@ -90,7 +104,7 @@ def framed(
         if name not in numbers:
             raise RunFailed(FailureKind.NO_COLUMN, step, names={"file": file, "column": name})
     order = matched(numbers, X, spacing, file, step)
-    found, sizes = {}, {}
+    found, digits = {}, {}
     for quantity, names in quantities.items():
         if not all(name in numbers for name in names):
             continue
@@ -99,6 +113,6 @@ def framed(
             particle = int(np.argwhere(~np.isfinite(values).all(axis=1))[0, 0])
             raise RunFailed(FailureKind.NOT_FINITE, step, particle, names={"file": file})
         found[quantity] = values
-        told = float(np.sqrt(sum(resolution.get(name, 0.0) ** 2 for name in names)))
-        sizes[quantity] = max(told, single(values))
-    return Frame(found, sizes)
+        told = np.stack([last.get(name, np.zeros(len(order)))[order] for name in names], axis=-1)
+        digits[quantity] = np.maximum(told, single(values))
+    return Frame(found, digits)

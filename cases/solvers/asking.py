@@ -5,6 +5,7 @@ A Python function is asked with arrays instead.
 
 import tempfile
 import time
+import traceback
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -13,9 +14,10 @@ from typing import Protocol
 from mpm_verify.cases.solvers.answer import Frame, around, read
 from mpm_verify.cases.solvers.callables import Case, called
 from mpm_verify.cases.solvers.column_map import parsed
-from mpm_verify.cases.solvers.command import PYTHON, filled
+from mpm_verify.cases.solvers.command import FOLDERS, PYTHON, filled
 from mpm_verify.cases.solvers.components import reference
 from mpm_verify.cases.solvers.levels import USUAL, Levels, levels
+from mpm_verify.cases.solvers.log import EMPTY, Log, logged, of_text
 from mpm_verify.cases.solvers.mapped import read as read_mapped
 from mpm_verify.mms.export.case import Exported
 from mpm_verify.mms.export.files import files
@@ -24,7 +26,7 @@ from mpm_verify.mms.export.process import run as run_program
 from mpm_verify.solver.failure import Failure, FailureKind, RunFailed
 from mpm_verify.solver.state import Floats
 
-LOG, LINES, WIDTH = "log.txt", 5, 300  # of the log, the last lines that are kept with the Result
+LOG = "log.txt"
 
 
 class Asking(Protocol):
@@ -55,7 +57,7 @@ class Answer:
     told: Levels
     failure: Failure | None = None
     wall_s: float = 0.0
-    log: tuple[str, ...] = ()
+    log: Log = EMPTY
     exit_code: int | None = None
 
 
@@ -106,9 +108,9 @@ def by_command(run: Asking, case: Exported, tick: Callable[[float], None]) -> An
         ended = run_program(words, out, run.time_limit, into=LOG, memory=room, look=look, here=Path.cwd())
         wall = time.perf_counter() - started
         failure, frames, told = None, dict[int, Frame](), Levels()
-        log = last_lines(out / LOG, ended)
+        log = logged((out / LOG, out / f"{LOG}.err"), {str(folder): FOLDERS[0], str(out): FOLDERS[1]})
         try:
-            check(ended, run.time_limit, log)
+            check(ended, run, log)
             told = levels(out, parsed(run.columns).levels if run.columns else USUAL)
             frames = frames_of(run, case, out)
         except RunFailed as error:
@@ -118,14 +120,16 @@ def by_command(run: Asking, case: Exported, tick: Callable[[float], None]) -> An
 
 def in_process(run: Asking, case: Exported, force: Callable[[Floats, float], Floats]) -> Answer:
     """Answer of a Python function."""
-    failure, frames, told = None, dict[int, Frame](), Levels()
+    failure, frames, told, log = None, dict[int, Frame](), Levels(), EMPTY
     started = time.perf_counter()
     try:
         given = Case(case.record, case.particles, force)
         frames, told = called(run.solver, given, positions(case), spacing(case))
     except RunFailed as error:
         failure = error.failure
-    return Answer(frames, told, failure, time.perf_counter() - started)
+        if raised := error.__cause__:
+            log = of_text("".join(traceback.format_exception(raised)))
+    return Answer(frames, told, failure, time.perf_counter() - started, log)
 
 
 def positions(case: Exported) -> Floats:
@@ -133,13 +137,14 @@ def positions(case: Exported) -> Floats:
     return reference(case.particles, case.record.dimension)
 
 
-def check(ended: Ended, seconds: float, log: tuple[str, ...]) -> None:
-    """Raise RunFailed for a program that did not end with 0, with the last line that it printed."""
-    names = {"said": log[-1]} if log else {}
+def check(ended: Ended, run: Asking, log: Log) -> None:
+    """Raise RunFailed for a program that did not end with 0, with its limits and the last line that it printed."""
+    names = {"said": log.lines[-1].strip()} if log.lines else {}
     if ended.code is None:
-        raise RunFailed(FailureKind.TIME_LIMIT, -1, numbers={"seconds": seconds}, names=names)
+        raise RunFailed(FailureKind.TIME_LIMIT, -1, numbers={"seconds": run.time_limit}, names=names)
     if ended.code != 0:
-        raise RunFailed(FailureKind.SOLVER_ERROR, -1, numbers={"code": float(ended.code)}, names=names)
+        limit = {"memory": run.memory_limit} if run.memory_limit else {}
+        raise RunFailed(FailureKind.SOLVER_ERROR, -1, numbers={"code": float(ended.code)} | limit, names=names)
 
 
 def spacing(case: Exported) -> float:
@@ -153,10 +158,3 @@ def frames_of(run: Asking, case: Exported, out: Path) -> dict[int, Frame]:
     if run.columns:
         return read_mapped(out, parsed(run.columns), steps, case.record.dt, X, spacing(case))
     return {step: read(out, step, X, spacing(case)) for step in steps}
-
-
-def last_lines(log: Path, ended: Ended) -> tuple[str, ...]:
-    """Last lines that the program printed, those on its error output last."""
-    said = log.read_bytes()[-4 * LINES * WIDTH :].decode("utf-8", "replace") if log.exists() else ""
-    lines = [line.strip()[:WIDTH] for line in f"{said}\n{ended.said}".splitlines() if line.strip()]
-    return tuple(lines[-LINES:])

@@ -11,7 +11,7 @@ import numpy as np
 from mpm_verify.cases.solvers.answer import Frame, framed
 from mpm_verify.cases.solvers.column_map import KEEPS, ColumnMap
 from mpm_verify.cases.solvers.components import spread
-from mpm_verify.cases.solvers.digits import rounding
+from mpm_verify.cases.solvers.digits import last_digits
 from mpm_verify.cases.solvers.many import Frames, frames, split
 from mpm_verify.cases.solvers.matching import matched
 from mpm_verify.cases.solvers.readers import Columns
@@ -111,13 +111,13 @@ def translated(columns: Columns, given: ColumnMap, X: Floats, spacing: float, fi
             what = f"{column.name} with the components of {ours}"
             raise RunFailed(FailureKind.NO_COLUMN, step, names={"file": file, "column": what}) from None
     try:
-        digits = rounding({name: values for name, (values, _) in written.items()})
+        last = last_digits({name: values for name, (values, _) in written.items()})
         numbers = {name: column.factor * np.asarray(values, dtype=np.float64)
                    + (0.0 if isinstance(column.add, str) else column.add)
                    for name, (values, column) in written.items()}  # fmt: skip
     except (ValueError, TypeError):
         raise RunFailed(FailureKind.UNREADABLE, step, names={"file": file}) from None
-    digits = {name: size * abs(written[name][1].factor) for name, size in digits.items()}
+    last = {name: values * abs(written[name][1].factor) for name, values in last.items()}
     moved = {
         name: X[:, k]
         for k, name in enumerate(AXES[: X.shape[1]])
@@ -126,8 +126,9 @@ def translated(columns: Columns, given: ColumnMap, X: Floats, spacing: float, fi
     if moved and len({len(values) for values in numbers.values()}) == 1:
         order = matched(numbers, X, spacing, file, step)
         numbers = {name: values[order] + moved.get(name, 0.0) for name, values in numbers.items()}
+        last = {name: values[order] for name, values in last.items()}
         numbers["id"] = np.arange(len(X), dtype=np.float64)
-    return framed(numbers, X, spacing, file, step, digits)
+    return framed(numbers, X, spacing, file, step, last)
 
 
 def ours_of(ours: str, theirs: str, columns: Columns, given: ColumnMap, dimension: int) -> dict[str, Any]:

@@ -5,7 +5,7 @@ import shlex
 from itertools import pairwise
 from math import log, log10
 
-from study import HERE, RESULTS, TOP, command, studies
+from study import HERE, RESULTS, TOP, command, comparison, studies
 
 PAGE = TOP / "docs" / "public-codes.md"
 KEPT = 7  # significant digits of a stored error
@@ -173,7 +173,8 @@ def page():
         "SAME": digits(same), "TABLE": table(), "OPEN": reasons("INCONCLUSIVE"), "FAILED": reasons("FAIL"),
         "REFUTED": refuted(), "STILL": still(), "NEAR_A_WALL": near_a_wall(), "STRETCHED": stretches(),
         "TWO_OF_A_KIND": digits({**stored("sparkl"), "reference": [one["u"] for one in stored("mpm99")["runs"]]}),
-        "TURNED": turned(), "FACED": faced(),
+        "TURNED": turned(), "FACED": faced(), "COMPARISON": shlex.join(comparison("kratos_compared")),
+        "COMPARED": "\n".join(f"- {line}" for line in stored("kratos_compared")["sentences"]),
         "ON_A_FACE": on_a_face(),
         "REPEAT": repeat(),
         "LARGE": series("kratos_usl_large"), "LARGE_REFERENCE": series("kratos_usl_large", reference=True),

@@ -27,6 +27,7 @@ from mpm_verify.solver.step import advance
 HERE = Path(__file__).resolve().parent
 TOP, RESULTS = HERE.parent.parent, HERE / "measured"
 FRAMES, COURANT = 16, 0.4
+COMPARED = {"kratos_compared": ("kratos_usl_large", 8)}  # studies that are held against the solver here on one grid
 
 
 def studies():
@@ -34,10 +35,30 @@ def studies():
     return {one["name"]: one for one in tomllib.loads((HERE / "studies.toml").read_text(encoding="utf-8"))["study"]}
 
 
+def solver_of(study, python="python"):
+    """Command of the program of a study."""
+    script = f"examples/adapters/{study['code']}/{study.get('script', 'adapter.py')}"
+    return f"{python} {script} {{case}} {{out}} {study['arguments']}".strip()
+
+
+def comparison(name, python="python"):
+    """Command that holds the answer of a study, on one grid, against the solver here; a list of words."""
+    study, cells = studies()[COMPARED[name][0]], str(COMPARED[name][1])
+    return [
+        "verify",
+        "compare",
+        "--solver",
+        solver_of(study, python),
+        "--solution",
+        study["solution"],
+        "--cells",
+        cells,
+    ]
+
+
 def command(study, python="python"):
     """Command of a study, a list of words."""
-    script = f"examples/adapters/{study['code']}/{study.get('script', 'adapter.py')}"
-    solver = f"{python} {script} {{case}} {{out}} {study['arguments']}".strip()
+    solver = solver_of(study, python)
     material = ["--material", study["material"]] if "material" in study else []
     cells = ["--cells", ",".join(map(str, study["cells"])), "--ppc", "4"]
     return ["verify", "mms", "--solver", solver, "--solution", study["solution"], *material, *cells, *study["expect"]]
@@ -45,13 +66,26 @@ def command(study, python="python"):
 
 def answered(words, out):
     """Document and stored results of a command, in a folder."""
-    full = [sys.executable, "-m", "mpm_verify", *words[1:], "--json", "--no-page", "--jobs", "1", "--out", str(out)]
+    document = told([*words, "--jobs", "1", "--out", str(out)])
+    stored = [json.loads(file.read_text(encoding="utf-8")) for file in sorted((out / "runs").glob("*.json"))]
+    return document, stored
+
+
+def told(words):
+    """Document of a command."""
+    full = [sys.executable, "-m", "mpm_verify", *words[1:], "--json", "--no-page"]
     path = os.pathsep.join(filter(None, [str(TOP), os.environ.get("PYTHONPATH", "")]))
     done = subprocess.run(full, cwd=TOP, capture_output=True, text=True, env=os.environ | {"PYTHONPATH": path})
     if done.returncode not in (0, 1, 3):
         raise SystemExit(done.stdout[-2000:] + done.stderr[-2000:])
-    stored = [json.loads(file.read_text(encoding="utf-8")) for file in sorted((out / "runs").glob("*.json"))]
-    return json.loads(done.stdout), stored
+    return json.loads(done.stdout)
+
+
+def compared(name, python):
+    """What a comparison says, as it is kept: in words, and the frame, step and particle at which quantities part."""
+    document = told(comparison(name, python))
+    parted = [{key: one[key] for key in ("quantity", "frame", "step", "particle")} for one in document["partings"]]
+    return {"outcome": document["outcome"], "sentences": [document["sentence"], *document["more"]], "partings": parted}
 
 
 def run(study, python):
@@ -105,11 +139,11 @@ def main(names):
     """Run some studies, or all, and keep what they gave."""
     known = studies()
     python = shlex.quote(os.environ.get("ADAPTERS_PYTHON", sys.executable))
-    for name in names or known:
-        found = run(known[name], python)
+    for name in names or [*known, *COMPARED]:
+        found = compared(name, python) if name in COMPARED else run(known[name], python)
         RESULTS.mkdir(exist_ok=True)
         (RESULTS / f"{name}.json").write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
-        print(name, found["verdict"], [row["u"] for row in found["runs"]], found.get("reference"), flush=True)
+        print(name, json.dumps(found), flush=True)
 
 
 if __name__ == "__main__":

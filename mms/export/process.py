@@ -79,7 +79,9 @@ def run(
                 preexec_fn=limited,
             )  # fmt: skip
         except OSError as error:
-            return Ended(127, f"{words[0]}: {error.strerror}")
+            said = f"{words[0]}: {error.strerror}"
+            complains.write(said.encode())
+            return Ended(127, said)
         code: int | None = None
         until = time.monotonic() + seconds
         try:

@@ -10,6 +10,7 @@ from mpm_verify.cases.harness.checks import Check, Examination
 from mpm_verify.cases.harness.store import Store, StoreError
 from mpm_verify.reports import words
 from mpm_verify.reports.components.film import Film
+from mpm_verify.reports.components.logs import Log
 from mpm_verify.reports.components.page import Add, Image, adder, template
 from mpm_verify.reports.components.show import Table
 from mpm_verify.reports.sentences import failures
@@ -41,10 +42,12 @@ def render(
     kinds: Sequence[str] = ("svg", "pdf", "png"),
     outcome: str = "",
     said: str = "",
+    logs: Sequence[Log] = (),
 ) -> Path:
     """Write report.html, figures/ in these kinds, tables/checks.csv; `sections` draws what is special.
 
     `outcome` and `said` stand on top: usual are those of the examination's checks, and what came out of it in words.
+    `logs` are those of runs of somebody else's solver that failed.
 
     Raises StoreError.
     """
@@ -58,6 +61,7 @@ def render(
             examination=examination,
             lead=said or lead(examination),
             outcome=outcome or str(examination.outcome),
+            logs=logs,
             missed=checks_table("Found and expected", missed, group=True) if missed else None,
             sections=sections(examination, adder(folder / "figures", kinds=kinds)),
             parameters=Table(

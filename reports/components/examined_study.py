@@ -7,6 +7,7 @@ from pathlib import Path
 from mpm_verify.cases.harness.checks import Examination
 from mpm_verify.cases.harness.store import StoreError
 from mpm_verify.reports.components.examined import Section, Sections, render
+from mpm_verify.reports.components.logs import failed
 from mpm_verify.reports.components.page import Add
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences.remarks import leads
@@ -28,7 +29,8 @@ def page(
     def drawn(_: Examination, add: Add) -> Sequence[Section]:
         return [*overview(found, add), *every(found, sections, add)]
 
-    return render(record.store.folder, whole(record, found), drawn, kinds, said=" ".join(leads(found)))
+    return render(record.store.folder, whole(record, found), drawn, kinds, said=" ".join(leads(found)),
+                  logs=failed(record))  # fmt: skip
 
 
 def whole(record: Record, found: Mapping[str, Examination]) -> Examination:

@@ -100,6 +100,7 @@ class Document:
     partings: list[PartingRow]
     alike: list[AlikeRow]
     failure: FailureRow | None
+    log: list[str]
     report: str | None
 
 
@@ -122,6 +123,7 @@ def document(run: Run, found: Compared, report: str | None = None) -> dict[str, 
         partings=[parting(one) for one in found.partings],
         alike=[alike(one) for one in found.alike],
         failure=failure(found.failure) if found.failure else None,
+        log=list(found.log.lines),
         report=report,
     )
     row: dict[str, Any] = finite(asdict(whole))

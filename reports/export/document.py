@@ -131,7 +131,10 @@ class ControlRow:
 
 @dataclass(frozen=True)
 class RunRow:
-    """Run, and how it ended; `errors` by quantity and norm, null of a failed run."""
+    """Run, and how it ended; `errors` by quantity and norm, null of a failed run.
+
+    `log` are the last lines that a solver of somebody else printed, and `log_file` has all of it.
+    """
 
     digest: str
     status: str
@@ -144,6 +147,8 @@ class RunRow:
     crossings: int | None
     gap: float | None
     wall_s: float
+    log: list[str]
+    log_file: str | None
 
 
 @dataclass(frozen=True)
@@ -181,7 +186,11 @@ def document(record: Record, page: Path | None, more: Row) -> str:
         "axes": axes(record),
         "checks": [asdict(check_row(check)) for check in found.checks],
         "controls": [asdict(control_row(record, control)) for control in found.controls],
-        "runs": [run_row(record.results[run.digest]) for run in study.runs if run.digest in record.results],
+        "runs": [
+            run_row(record.results[run.digest], record.store.log(run.digest))
+            for run in study.runs
+            if run.digest in record.results
+        ],
         "more": finite(more),
         "report": str(page) if page else None,
     }
@@ -281,12 +290,13 @@ def control_row(record: Record, control: Control) -> ControlRow:
     return ControlRow(str(control.code), controls.name(control), len(control.tried), control.refused, passed)
 
 
-def run_row(result: ResultRecord[Any]) -> Row:
+def run_row(result: ResultRecord[Any], log: Path | None) -> Row:
     """Row of a run with all its parameters."""
     row = RunRow(
         result.digest, result.status, failure(result.failure) if result.failure else None,
         failures.failure(result.failure) if result.failure else "", result.errors or None,
         finite(result.values), result.steps, result.particles, result.crossings, result.gap, result.wall_s,
+        list(getattr(result, "log", ())), str(log) if log else None,
     )  # fmt: skip
     return joined(finite(asdict(result.run)), asdict(row))
 

@@ -9,6 +9,7 @@ from mpm_verify.cases.harness.checks import Check
 from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.cases.judging.records import Outcome
 from mpm_verify.reports import words
+from mpm_verify.reports.components.logs import failed
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences import commands, failures, own_solver, stalls
 
@@ -57,7 +58,8 @@ def _verdict(suite: Any, record: Record, finding: Finding) -> None:
         ElementTree.SubElement(case, kind, type=str(v.outcome), message=said)
     stall = [stalls.where(finding.stall) + ".", *stalls.reasons(finding.stall)] if finding.stall else []
     hints = own_solver.hints(result for result in finding.results if result)
-    ElementTree.SubElement(case, "system-out").text = "\n".join([said, *stall, *hints])
+    logs = map(str, failed(record, finding.results))
+    ElementTree.SubElement(case, "system-out").text = "\n".join([said, *stall, *hints, *logs])
 
 
 def _check(suite: Any, study: str, check: Check) -> None:

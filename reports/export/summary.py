@@ -1,6 +1,7 @@
 """Study in a few lines of Markdown, for the summary of a CI job."""
 
 from mpm_verify.reports import words
+from mpm_verify.reports.components.logs import failed
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences import commands, controls, own_solver, verdicts
 from mpm_verify.reports.sentences.headline import badge, headline
@@ -29,6 +30,8 @@ def markdown(record: Record) -> str:
     if told := controls.sentence(found.controls):
         lines += ["", told]
     lines += [f"- {escaped(hint)}" for hint in own_solver.hints(record.results.values())]
+    for log in failed(record):
+        lines += [f"- {escaped(log.sentence)}", "", *(f"      {line}" for line in log.lines), ""]
     if found.checks:
         missed = [check for check in found.checks if check.outcome != "PASS"]
         lines += ["", f"{len(found.checks) - len(missed)} of {len(found.checks)} checks pass."]

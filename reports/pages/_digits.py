@@ -11,6 +11,7 @@ from mpm_verify.cases.mms.digits.examine import Examined
 from mpm_verify.reports import words
 from mpm_verify.reports.components.digits import table
 from mpm_verify.reports.components.examined import Section, render
+from mpm_verify.reports.components.logs import FILE, of_comparison
 from mpm_verify.reports.components.page import Add
 from mpm_verify.reports.export.digits import document
 from mpm_verify.reports.figures.difference import difference
@@ -38,7 +39,10 @@ def page(examined: Examined, folder: Path, command: str) -> Path:
     path = render(
         folder, examination, lambda _, add: sections(examined, add),
         outcome=BADGES.get(said, said), said=digits.outcome(found),
+        logs=of_comparison(run, found, folder),
     )  # fmt: skip
+    if found.log.text:
+        Store.write(folder / FILE, found.log.text.encode())
     Store.write(folder / "comparison.json", json.dumps(document(run, found, str(path)), indent=1).encode())
     return path
 

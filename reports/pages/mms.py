@@ -13,6 +13,7 @@ from mpm_verify.cases.mms.run import QUANTITIES, Run
 from mpm_verify.reports import words
 from mpm_verify.reports.components import audited, show, show_axes, show_graded, show_runs
 from mpm_verify.reports.components.cards import cards, summary
+from mpm_verify.reports.components.logs import failed
 from mpm_verify.reports.components.page import Add, Image, adder, template
 from mpm_verify.reports.components.show_cost import figure_rows, overview
 from mpm_verify.reports.components.stalls import looked, stalls
@@ -78,6 +79,7 @@ def _page(record: Record, folder: Path, field: tuple[int, int]) -> str:
         show_runs=show_runs,
         show_axes=show_axes,
         stalls=stalls(record),
+        logs=failed(record),
         cost=_cost(record, folder),
         overview=overview,
         slower=any((s.first.method, s.first.solution) == ("mpm", "axis_aligned") for s in record.series),

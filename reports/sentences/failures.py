@@ -1,4 +1,7 @@
-"""Failures in words: what ended a run, where and when."""
+"""Failures in words: what ended a run, where and when, and what a program had printed."""
+
+import signal
+from dataclasses import replace
 
 from mpm_verify.solver.failure import Failure, FailureKind
 
@@ -48,9 +51,9 @@ def theirs(failure: Failure) -> str:
     """Failure of a solver of somebody else, with what the file lacks; empty of any other."""
     n, file, k = failure.numbers, failure.names.get("file", ""), failure.kind
     if k is FailureKind.SOLVER_ERROR and n:
-        signal = n["code"] < 0
         said = f": {failure.names['said']}" if "said" in failure.names else ""
-        return f"the solver ended with {'signal' if signal else 'exit code'} {abs(n['code']):g}{said}"
+        limit = f" under a limit of {n['memory']:g} MB of memory" if "memory" in n else ""
+        return f"the solver ended with {code(int(n['code']))}{limit}{said}"
     if not file:
         return ""
     if k is FailureKind.NO_ANSWER:
@@ -64,6 +67,35 @@ def theirs(failure: Failure) -> str:
     if k is FailureKind.OTHER_PARTICLES:
         return f"{file} has {n['found']:g} of the {n['expected']:g} particles that were given"
     return ""
+
+
+def code(number: int) -> str:
+    """Exit code or signal: `exit code 3`, `signal 11 (Segmentation fault)`."""
+    if number >= 0:
+        return f"exit code {number}"
+    known = signal.strsignal(-number) if -number in signal.valid_signals() else None
+    return f"signal {-number}{f' ({known})' if known else ''}"
+
+
+def logged(run: str, ended: Failure, lines: int, file: str, others: int = 0) -> str:
+    """Sentence on the log of a failed run: which one, why, how many ended alike, and where all of it is kept."""
+    alike = f" ({others} other run{'s' * (others > 1)} ended alike)" if others else ""
+    quiet = replace(ended, names={name: told for name, told in ended.names.items() if name != "said"})  # it follows
+    return f"{run}: {failure(quiet)}{alike}; {printed(ended, lines, file)}"
+
+
+def printed(ended: Failure, lines: int, file: str) -> str:
+    """Introduction of the last lines of a log, or that there are none."""
+    if lines:
+        kept = f", all of it in {file}" if file else ""
+        return f"{f'the last {lines} lines' if lines > 1 else 'the last line'} that it printed{kept}:"
+    late = ", and what it still held back is not seen: let it write at once (python -u, fflush)"
+    return f"it printed nothing{late if ended.kind is FailureKind.TIME_LIMIT else ''}."
+
+
+def more_logs(number: int) -> str:
+    """Sentence on logs that are not printed; empty where there are none."""
+    return f"{number} other log{'s' * (number > 1)} of failed runs: on the page, and in --json." if number > 0 else ""
 
 
 def failure(failure: Failure) -> str:

@@ -8,7 +8,9 @@ from mpm_verify.reports.sentences.numbers import percent
 HINTS = {  # in the order in which they are said
     "id_and_X": "id and X, Y name different particles for {percent} of the rows; they fit by X, Y, and id was taken.",
     "permuted": "Particles fit when they are matched by position: {percent} of the rows have the id of another one.",
-    "still": "The displacement is {value:.1g} of the exact one: nothing moves; is the force added to the motion?",
+    "still": "Errors equal u: nothing moves; is the force added to the motion, and are new positions written?",
+    "unmoved": "No position changes in the digits that are written; the last of them is {value:.2g} times the exact "
+    "displacement. Nothing moves, or it moves and that cannot be seen: write 17 digits.",
     "x_is_u": "x fits when X is added to it: write positions, not displacements.",
     "wall_in": "In the cells next to the walls particles move {value:.2f} of what they should: "
     "are nodes held that lie one node inside the body?",
@@ -20,6 +22,7 @@ HINTS = {  # in the order in which they are said
     "shift": "Positions fit the exact ones best {steps}: is each file that of the step in its name?",
     "time_scale": "Positions fit at {value:.5g} times their time: is dt rounded, or the number of steps another?",
     "force_at_x": "The motion fits a body force that is taken at the position x: it is a function of X.",
+    "force_swapped": "The motion fits a body force whose components are exchanged: x comes first.",
     "force_lag": "The motion fits a body force of {lag}: is it that of the start of the step?",
     "stress_lag": "The motion fits a stress of {lag}: from which level of F is it?",
     "viscous": "Velocities are smoothed in each step, as by a viscosity of {value:.2g} dx²/dt: so does PIC, and a FLIP "

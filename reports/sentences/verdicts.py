@@ -289,6 +289,7 @@ SAID: dict[ReasonCode, Callable[[Reason], str]] = {
     ReasonCode.FAR_OFF: _far_off,
     ReasonCode.RUN_ENDED: _run_ended,
     ReasonCode.FALLS_SHORT: _falls_short,
+    ReasonCode.NOTHING_MOVES: lambda r: "nothing moves: the error is u itself",
     ReasonCode.CONVERGES: lambda r: (
         f"a surprise: not expected to converge, the error fell {_path(r)}, order {words.order(_number(r, 'order'))}"
     ),

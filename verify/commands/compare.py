@@ -41,7 +41,7 @@ def compare(
         typer.Option(
             help=f"Bases of the references, with commas: {choices(METHODS)}.",
             autocompletion=completion(METHODS),
-            show_default="mpm,gimp,cpgimp,cpdi,bspline2,bspline3",
+            show_default="mpm,gimp,cpgimp,cpdi,bspline2,bspline3,tlmpm",
         ),
     ] = "",
     stress: Annotated[

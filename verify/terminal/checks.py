@@ -6,6 +6,7 @@ from pathlib import Path
 
 from mpm_verify.cases.harness.checks import Check
 from mpm_verify.reports import words
+from mpm_verify.reports.components.logs import failed
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences import failures
 
@@ -19,6 +20,7 @@ def show(record: Record, page: Path | None, lead: str = "", titled: bool = True)
     from rich.table import Table
     from rich.text import Text
 
+    from mpm_verify.verify.terminal import logs
     from mpm_verify.verify.terminal.table import STYLES, Listened, where
 
     out = Listened(highlight=False, soft_wrap=False)
@@ -40,6 +42,7 @@ def show(record: Record, page: Path | None, lead: str = "", titled: bool = True)
     for check in every:
         if check.outcome != "PASS":
             out.print(Text.assemble((str(check.outcome), STYLES[check.outcome]), f" {check.group}: {sentence(check)}"))
+    logs.show(out, failed(record))
     if lead:
         out.print(Text(f"\n{lead}"))
     where(out, page)

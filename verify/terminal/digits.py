@@ -7,8 +7,10 @@ from rich.text import Text
 
 from mpm_verify.cases.mms.digits.examine import Examined
 from mpm_verify.reports.components.digits import table
+from mpm_verify.reports.components.logs import of_comparison
 from mpm_verify.reports.pages._digits import title
 from mpm_verify.reports.sentences import digits
+from mpm_verify.verify.terminal import logs
 from mpm_verify.verify.terminal.table import STYLES, Listened
 
 COLOURS = {"AGREES": STYLES["PASS"], "PARTS": STYLES["FAIL"]}
@@ -36,6 +38,7 @@ def show(examined: Examined, page: Path | None) -> None:
     )
     for line in digits.sentences(found):
         out.print(line, markup=False)
+    logs.show(out, of_comparison(examined.run, found, page.parent if page else None))
     if page:
         out.print(f"\nreport: {page}", soft_wrap=True, markup=False)
         if (picture := page.parent / "figures" / "difference.png").exists():

@@ -16,10 +16,12 @@ from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.cases.judging.stall import Stall
 from mpm_verify.reports import words
 from mpm_verify.reports.components.audited import edges, unseen
+from mpm_verify.reports.components.logs import failed
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences import commands, controls, own_solver, stalls, verdicts
 from mpm_verify.reports.sentences.headline import badge, headline
 from mpm_verify.solver.plugins import label
+from mpm_verify.verify.terminal import logs
 
 STYLES = {"PASS": "bold green", "FAIL": "bold red", "INCONCLUSIVE": "bold yellow", "ERROR": "bold magenta"}
 MET = "bold blue"  # a registered non-convergence that was seen
@@ -53,6 +55,7 @@ def show(record: Record, page: Path | None, console: Console | None = None) -> N
     for finding in found:
         if finding.counts:
             verdict(out, record, finding)
+    logs.show(out, failed(record))
     if beside := verdicts.beside(found):
         out.print(f"\n{beside}", style="dim")
     if spoilt := record.analysis.controls:

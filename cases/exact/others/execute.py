@@ -33,8 +33,8 @@ def execute(run: Run, tick: Callable[[float], None] = lambda fraction: None) -> 
         environment=environment(),
         parameters=parameters("material", create(MATERIALS, run.material)),
         tested=() if answer.failure else tuple(judged(run.test, held)),
-        log=answer.log,
+        log=answer.log.lines,
         exit_code=answer.exit_code,
         told=answer.told.version,
     )
-    return result, {}
+    return result, answer.log.kept

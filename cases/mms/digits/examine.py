@@ -77,7 +77,7 @@ def examine(
     case = exported(run)
     answer = answered(run, case)
     if answer.failure:
-        return Examined(run, Compared({}, {}, (), failure=answer.failure))
+        return Examined(run, Compared({}, {}, (), failure=answer.failure, log=answer.log))
     exact, X = manufactured(run.solution, run.material), positions(case)
     theirs = errors(exact, X, case.record.dt, answer.frames, answer.told)
     own = {q: rms(error, case.particles["V0"]) for q, error in theirs.items()}

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 
 from mpm_verify.cases.mms.digits.reference import Scheme
+from mpm_verify.cases.solvers.log import EMPTY, Log
 from mpm_verify.solver.failure import Failure
 
 AGREES = 3.0  # digits: with fewer, a quantity parts
@@ -121,6 +122,8 @@ class Compared:
         References that agree with the nearest in all digits shown.
     failure
         Reason why there is no answer.
+    log
+        What the solver printed.
     """
 
     rms: dict[str, float]
@@ -132,6 +135,7 @@ class Compared:
     partings: tuple[Parting, ...] = ()
     alike: tuple[Alike, ...] = ()
     failure: Failure | None = None
+    log: Log = EMPTY
 
     @property
     def nearest(self) -> Against:

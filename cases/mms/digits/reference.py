@@ -18,7 +18,7 @@ from mpm_verify.solver.plugins import SOLUTIONS, create
 from mpm_verify.solver.state import Floats
 from mpm_verify.solver.step import advance, check_time_step
 
-METHODS = ("mpm", "gimp", "cpgimp", "cpdi", "bspline2", "bspline3")
+METHODS = ("mpm", "gimp", "cpgimp", "cpdi", "bspline2", "bspline3", "tlmpm")
 STRESSES = ("usl", "musl", "usf")
 TRANSFERS = ("flip", "pic", "apic")
 

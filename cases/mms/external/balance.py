@@ -48,11 +48,14 @@ class Balance:
         found: Floats = np.einsum("p,...pab,jpab->...j", self.of.V0, self.of.piola(F), self.gradient)
         return found
 
-    def force(self, lag: float = 0.0, at: Floats | None = None) -> Floats:
-        """Moments B (1+K,T) of the body force, `lag` steps before, at X or at positions (1+K,P,2)."""
+    def force(self, lag: float = 0.0, at: Floats | None = None, swapped: bool = False) -> Floats:
+        """Moments B (1+K,T) of the body force, `lag` steps before, at X or at positions (1+K,P,2).
+
+        `swapped` exchanges its components.
+        """
         b, X = self.of.exact.b, self.of.X
         fields = [b(X if at is None else at[k], t - lag * self.dt) for k, t in enumerate(self.times)]
-        return self.momentum(np.stack(fields))
+        return self.momentum(np.stack(fields)[..., ::-1] if swapped else np.stack(fields))
 
     @cached_property
     def rate(self) -> Floats:
@@ -89,6 +92,7 @@ class Balance:
             "damped": -hats(self.momentum(v), t) / self.dt,
             "stress_lag": hats(rates(self.S, t), t) * self.dt,
             "force_at_x": hats(self.force(at=of.X + of.u) - self.force(), t),
+            "force_swapped": hats(self.force(swapped=True) - self.force(), t),
         }
         if of.has("F"):
             found["stress_of_F"] = -hats(self.stress(of.F_given) - self.S, t)

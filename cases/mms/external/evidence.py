@@ -86,6 +86,18 @@ class Evidence:
         field = getattr(self.exact, name)
         return np.stack([field(self.X, t - lag * self.dt).reshape(len(self.X), -1) for t in self.times[1:]])
 
+    @property
+    def start(self) -> Floats:
+        """Positions (P,d) that were given for the start."""
+        return np.stack([self.case.particles[axis] for axis in AXES[: self.d]], axis=-1)
+
+    @property
+    def last_digits(self) -> Floats:
+        """Values (K,P,d) of the last digits of the positions as they were written; rounding of double precision."""
+        x = self.given("x")
+        told = [frame.last.get("x", np.zeros(self.X.shape)) for frame in self.frames.values()]
+        return np.maximum(np.stack(told), np.spacing(np.abs(x)))
+
     @cached_property
     def u(self) -> Floats:
         """Displacements of the answer (1+K,P,d); that of the start is the exact one."""

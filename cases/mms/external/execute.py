@@ -10,7 +10,9 @@ from mpm_verify.cases.harness.environment import environment
 from mpm_verify.cases.harness.study import Arrays, parameters
 from mpm_verify.cases.mms.exact import audited, manufactured
 from mpm_verify.cases.mms.external.errors import Found, compare
+from mpm_verify.cases.mms.external.evidence import Evidence
 from mpm_verify.cases.mms.external.hints import hints
+from mpm_verify.cases.mms.external.motion import still
 from mpm_verify.cases.mms.run import Result, Run
 from mpm_verify.cases.solvers.asking import Answer, ask, positions
 from mpm_verify.mms.discretisation import dimension
@@ -36,14 +38,20 @@ def execute(run: Run, tick: Callable[[float], None] = lambda fraction: None) -> 
         found = compare(exact, X, case.particles["V0"], dt, answer.frames, answer.told)
         why = hints(exact, case, answer.frames, answer.told)
     result, numbers = result_of(run, case, found, answer.failure), answer.told.numbers
-    return replace(result, wall_s=answer.wall_s, log=answer.log, exit_code=answer.exit_code,
-                   told=answer.told.version, values=why | numbers), {}  # fmt: skip
+    return replace(result, wall_s=answer.wall_s, log=answer.log.lines, exit_code=answer.exit_code,
+                   told=answer.told.version, values=why | numbers), answer.log.kept  # fmt: skip
 
 
 def answered(run: Run, case: Exported, tick: Callable[[float], None] = lambda fraction: None) -> Answer:
-    """Answer of a command or of a Python function to a case."""
-    start, b = named(run.start), exact_of(run).b
-    return ask(run, case, start.force(b, case.record.dt) if start else b, tick)
+    """Answer of a command or of a Python function to a case.
+
+    Where nothing moves that is known of its frames.
+    """
+    start, exact = named(run.start), exact_of(run)
+    answer = ask(run, case, start.force(exact.b, case.record.dt) if start else exact.b, tick)
+    if not answer.frames or "still" not in still(Evidence(exact, case, answer.frames, answer.told)):
+        return answer
+    return replace(answer, frames={step: replace(frame, moves=False) for step, frame in answer.frames.items()})
 
 
 @cache

@@ -20,7 +20,8 @@ from mpm_verify.mms.manufacture import Manufactured
 LAGS = (-0.5, 0.0, 0.5, 1.0)  # steps that a field may be behind x
 FEW = 8  # frames that a balance in time takes
 FAR = 10.0  # widths of the body: such displacements say nothing
-ALONE = ("id_and_X", "permuted", "still", "x_is_u")  # of a motion that says nothing more
+MOTIONLESS = ("still", "unmoved")
+ALONE = ("id_and_X", "permuted", *MOTIONLESS, "x_is_u")  # of a motion that says nothing more
 
 
 def hints(exact: Manufactured, case: Exported, frames: dict[int, Frame], levels: Levels) -> dict[str, float]:
@@ -55,7 +56,7 @@ def explained(e: Evidence) -> dict[str, float]:
     found = motion.single(e)
     moved = motion.order(e) or motion.still(e) or motion.displacements(e) or motion.walls(e) or by_time(e)
     if moved.keys() & set(ALONE):
-        return moved | found
+        return moved | ({} if moved.keys() & set(MOTIONLESS) else found)
     of_F = consistency.of_F(e)
     of_sigma = consistency.of_stress(e, bool(of_F))
     if "F_twice" in of_F or of_sigma.keys() & {"sigma_mean", "plane_stress"}:

@@ -19,6 +19,7 @@ CLEAR = 0.1  # factor on the error of particles in another order
 SCALED, ROUNDED = 0.35, 0.05  # factor on the error, and change, of another length of a step
 WAVE = 0.25  # of (pi dx / width)^2: a grid slows a standing wave by about a ninth of that, which no rounding is
 STILL = 1e-3  # of the exact displacement: nothing has moved
+HALF, SHOWN = 0.51, 1.5  # last digits: the most that rounding moves a number, and a motion that changes it
 HELD = 0.2  # of the exact displacement: a layer of particles that a wall holds
 SHIFTS = (-3, -2, -1, 1, 2, 3)  # steps
 FACTOR, LEFT = 0.1, 0.12  # from 1, and of the balance, of a factor on force or stress that is told
@@ -67,9 +68,21 @@ def order(e: Evidence) -> dict[str, float]:
 
 
 def still(e: Evidence) -> dict[str, float]:
-    """Displacement over the exact one, where nothing moves."""
-    part = rms(e.u[1:]) / rms(e.u_exact[1:])
-    return {"still": part} if part <= STILL else {}
+    """Displacement from the start over the exact one, where nothing moves.
+
+    Where no number changes, and the exact ones do not in as many digits either, nobody can tell: that is `unmoved`,
+    the last digits over the exact displacement.
+    """
+    start = e.start
+    moved, exact = e.given("x") - start, e.X + e.u_exact[1:] - start
+    if not exact.any():
+        return {}
+    last, part = e.last_digits, rms(moved) / rms(exact)
+    if part > STILL and np.any(np.abs(moved) > HALF * last):
+        return {}
+    if np.sum(np.abs(exact) > SHOWN * last) >= MANY:
+        return {"still": part}
+    return {"unmoved": rms(last) / rms(exact)}
 
 
 def displacements(e: Evidence) -> dict[str, float]:
@@ -137,19 +150,19 @@ def at_walls(e: Evidence) -> dict[str, float]:
 def forces(tried: dict[str, Tried], steps: int) -> tuple[dict[str, float], float]:
     """Cause that explains most of what is left of the momentum balance, if more than half, and what it leaves of it."""
     factors = {name: tried[name] for name in ("force_factor", "stress_factor")}
-    name = min(factors, key=lambda name: factors[name].left)
+    factor = min(factors, key=lambda name: factors[name].left)
     of_F = tried.get("stress_of_F")
-    if factors[name].left < LEFT and abs(factors[name].value) > FACTOR:
-        explained = name == "stress_factor" and of_F is not None and of_F.left < LEFT and abs(of_F.value - 1) < NEARLY
-        return {"stress_of_F" if explained else name: 1 + factors[name].value}, factors[name].left
-    x = tried["force_at_x"]
-    if x.left < BETTER and abs(x.value - 1) < NEARLY:
-        return {"force_at_x": x.value}, x.left
+    if factors[factor].left < LEFT and abs(factors[factor].value) > FACTOR:
+        explained = factor == "stress_factor" and of_F is not None and of_F.left < LEFT and abs(of_F.value - 1) < NEARLY
+        return {"stress_of_F" if explained else factor: 1 + factors[factor].value}, factors[factor].left
+    for name in ("force_swapped", "force_at_x"):
+        if tried[name].left < BETTER and abs(tried[name].value - 1) < NEARLY:
+            return {name: tried[name].value}, tried[name].left
     least = {"viscous": LOST, "force_lag": LATE, "stress_lag": LATE, "damped": DAMPED / steps}
     fits = {key: tried[key] for key in least if tried[key].left < BETTER and abs(tried[key].value) > least[key]}
     fits = {key: fit for key, fit in fits.items() if fit.value > 0 or key.endswith("_lag")}
     best = min((fit.left for fit in fits.values()), default=1.0)
-    if factors[name].left < best:  # a factor so near 1 that a coarse grid makes it explains more
+    if factors[factor].left < best:  # a factor so near 1 that a coarse grid makes it explains more
         return {}, 1.0
     return next((({key: fit.value}, fit.left) for key, fit in fits.items() if fit.left <= TIE * best), ({}, 1.0))
 
