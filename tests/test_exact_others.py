@@ -40,6 +40,7 @@ SEEN: dict[str, set[str]] = {
     "V as it should be": set(),
     "force never added": {"throw_growing", "sums", "force"},
     "force of the other sign": {"throw_growing", "sums", "force"},
+    "components of the force exchanged": {"throw_growing", "sums", "force"},
     "force a fifth too large": {"throw_growing", "sums", "force"},
     "force at x": {"force"},
     "force one step late": {"throw_growing"},

@@ -441,14 +441,6 @@ def test_a_fault_is_hinted_at(name: str) -> None:
     assert own_solver.hint(name, value)
 
 
-def test_a_time_step_that_is_rounded_is_told_by_its_length() -> None:
-    """Positions of 1.01 times their time, where the error of the grid does not hide it."""
-    found = hints(EXACT, GIVEN, frames_of(lambda step: {"x": EXACT.x(X, 1.01 * step * STEP)}), USUAL)
-    assert set(found) == {"time_scale"}
-    assert found["time_scale"] == pytest.approx(1.01, abs=2e-4)
-    assert "is dt rounded" in own_solver.hint("time_scale", found["time_scale"])
-
-
 def test_no_fault_is_hinted_at_where_there_is_none() -> None:
     """Of a right answer, and of one with errors of five per cent that no other reading mends."""
     assert hints(EXACT, GIVEN, frames_of(lambda step: {}), USUAL) == {}

@@ -23,7 +23,7 @@ from mpm_verify.cases.objectivity.axes import KINEMATIC, Block
 from mpm_verify.cases.objectivity.execute import ObjectivityResult
 from mpm_verify.cases.objectivity.findings import ObjectivityRemark
 from mpm_verify.cases.objectivity.rates import order_checks, order_errors
-from mpm_verify.mms.blind_spots import ALWAYS, RULES, SEEN_BY, BlindSpot, BlindSpotCode, judge
+from mpm_verify.mms.blind_spots import ALWAYS, AROUND, RULES, SEEN_BY, BlindSpot, BlindSpotCode, judge
 from mpm_verify.reports.sentences import blind_spots, column, element, numbers, objectivity, remarks
 from mpm_verify.verify.main import main
 
@@ -151,14 +151,17 @@ def spots() -> Iterator[BlindSpot]:
     for size in (0.0, 20.0):
         yield from judge(numbers_of_a_solution(size))
     yield from judge(numbers_of_a_solution(20.0) | {"left": 1.0, "top": 2.0, "small_strain": 1.0})
+    for size in (0.0, 20.0):
+        hoop = {name: size for _, needed in AROUND.values() for name in needed}
+        yield from judge(numbers_of_a_solution(20.0) | hoop | {"axisymmetric": 1.0})
 
 
 def test_every_blind_spot_has_words() -> None:
     every = {spot.code for spot in spots()}
-    some = {BlindSpotCode.EDGES, BlindSpotCode.MODEL}  # of some solutions alone
+    some = {BlindSpotCode.EDGES, BlindSpotCode.MODEL, BlindSpotCode.HOOP}  # of some solutions alone
     assert every == set(BlindSpotCode) == set(SEEN_BY) | {spot.code for spot in ALWAYS} | some
     for spot in spots():
-        for blind in (False, True) if spot.code in RULES else (spot.blind,):
+        for blind in (False, True) if spot.code in RULES | AROUND else (spot.blind,):
             text = blind_spots.sentence(replace(spot, blind=blind))
             assert text[0].isupper() or text.startswith("det F")
             assert text.endswith(".")

@@ -351,8 +351,8 @@ def test_usual_cells_are_those_of_three_dimensions() -> None:
 
 
 def test_sizes_of_runs() -> None:
-    solid = Run(solution="bump3d", dim=3, cells=6, ppc=8, solver=OURS)
-    thick = Run(solution="bump", dim=3, cells=6, ppc=4, solver=OURS)
+    solid = Run(method="true", solution="bump3d", dim=3, cells=6, ppc=8, solver=OURS)
+    thick = Run(method="true", solution="bump", dim=3, cells=6, ppc=4, solver=OURS)
     assert (solid.particles, solid.nodes, str(solid)) == (6**3 * 8, 7**3, "true 6³ cells, 8 per cell")
     assert (thick.particles, thick.nodes) == (6**2 * 8, 2 * 7**2)
     assert str(thick) == "true 6² cells, 4 per cell, one cell thick"

@@ -105,10 +105,10 @@ class Store:
         texts = {name: found for name, found in arrays.items() if isinstance(found, str)}
         buffer = io.BytesIO()
         np.savez(buffer, allow_pickle=False, **{name: found for name, found in arrays.items() if name not in texts})
+        self.write(path.with_suffix(".npz"), buffer.getvalue())
         path.with_suffix(".log").unlink(missing_ok=True)  # of the run before, where it failed
         for name, found in texts.items():
             self.write(path.with_suffix(f".{name}"), found.encode(errors="replace"))
-        self.write(path.with_suffix(".npz"), buffer.getvalue())
         self.write(path.with_suffix(".json"), text)
 
     def _text(self, record: Any, adapter: TypeAdapter[Any]) -> bytes:
