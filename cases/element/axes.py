@@ -20,6 +20,7 @@ TEST_NAMES = (*PLANE_TESTS, *TRIAXIAL_TESTS, *MOTION_TESTS)
 STARTS = ("isotropic", "none", "k0", "oedometric")
 MOTIONS = ("none", "simple_shear")
 AXES = {"test": (*PLANE_TESTS, PROPERTIES)}
+MOST_STEPS = 10_000
 
 
 @dataclass(frozen=True)
@@ -47,8 +48,8 @@ class ElementRun(RunRecord):
         known = (*TEST_NAMES, PROPERTIES, PATH)
         if self.test not in known:
             raise ValueError(f"no test {self.test!r}; choose from {', '.join(known[:-1])}")
-        if not 1 <= self.steps <= 10_000:
-            raise ValueError(f"steps = {self.steps} cannot be run; choose whole numbers from 1 to 10000")
+        if not 1 <= self.steps <= MOST_STEPS:
+            raise ValueError(f"steps = {self.steps} cannot be run; choose whole numbers from 1 to {MOST_STEPS}")
         if not 0 < self.stress < inf:
             raise ValueError(f"stress = {self.stress:g} must be above zero and finite: compression is positive")
         if bool(self.path) != (self.test == PATH):

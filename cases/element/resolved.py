@@ -5,15 +5,18 @@ goes through the whole test at once: no strain may then be found that leads to w
 And below 1e-9 of the stiffness round-off of the steps decides on which side of a tension cut-off the soil is.
 """
 
+from math import ceil, isfinite
 from typing import Any
 
 import numpy as np
 
+from mpm_verify.cases.element.axes import MOST_STEPS
 from mpm_verify.cases.element.paths import ElementTest
 from mpm_verify.cases.element.study import DOUBLED, ElementStudy
 
 DIGITS = 1e-9  # of the stiffness: a stress below it has too few digits left
 WHOLE, ORDERLY = 1.0, 0.9  # stress of a step over that at the start, with which tests end, and have their order
+STEP, TRIES = 1.5, 100  # stresses that are tried for one that is resolved: up to 4e17 times the one that is not
 
 
 def made(material: Any, test: ElementTest, stress: float, steps: int) -> float:
@@ -44,15 +47,26 @@ def stiffness(material: Any, stress: float) -> float:
 
 
 def check_stress(material: Any, test: ElementTest, stress: float, steps: int) -> None:
-    """Raise ValueError, with one that is resolved, for a stress at the start that even the finest steps are not."""
+    """Raise ValueError, with what is resolved, for a stress at the start that even the finest steps are not."""
     if not resolved(material, test, stress, steps):
-        enough = stress
-        while not resolved(material, test, enough, steps):
-            enough *= 1.5
         raise ValueError(
             f"stress = {stress:g}: one strain step of {test.name} makes more than this in {material.name}, or "
-            f"round-off does; choose {float(f'{1.05 * enough:.1e}'):g} or more, or --start none"
+            f"round-off does; choose {_instead(material, test, stress, steps)}--start none"
         )
+
+
+def _instead(material: Any, test: ElementTest, stress: float, steps: int) -> str:
+    """Phrase on a stress that is resolved, or else on steps that resolve this one, before `or`; empty without both.
+
+    No stress is resolved where a stiffness is in proportion to stress, or not a number.
+    """
+    found = next((s for k in range(TRIES) if resolved(material, test, s := stress * STEP**k, steps)), None)
+    if found is not None:
+        return f"{float(f'{1.05 * found:.1e}'):g} or more, or "
+    factor = made(material, test, stress * test.loose, test.steps(steps) * DOUBLED[-1]) / WHOLE
+    more = ceil(1.05 * steps * factor) if isfinite(factor) else 0
+    enough = 0 < more <= MOST_STEPS and resolved(material, test, stress, more)
+    return f"--steps {more} or more, or " if enough else ""
 
 
 def check_digits(material: Any, test: ElementTest) -> None:
