@@ -11,9 +11,10 @@ from fixtures_command import TOP, caller, one_line, process
 
 from mpm_verify.cases.judging.fit import local_orders
 from mpm_verify.cases.judging.known import CELLS, KNOWN, Known
-from mpm_verify.cases.judging.power import CLEAN, Promise, Row, floors, interval, measure, promises, row
+from mpm_verify.cases.judging.power import CLEAN, Promise, Row, Standing, floors, interval, measure, promises, row
 from mpm_verify.cases.mms.run import AXES, QUICK
 from mpm_verify.reports.export import power as files
+from mpm_verify.reports.sentences import power as words
 from mpm_verify.verify.commands import power as command
 
 DOCS = TOP / "docs"
@@ -169,6 +170,30 @@ def test_a_promise_is_broken_where_its_interval_says_so(kind: str, count: int, l
     assert Promise(kind, counted("h^2", count, 0, 100 - count), count, limit).kept is kept
 
 
+@pytest.mark.parametrize(
+    ("kind", "count", "limit", "standing", "said"),
+    [
+        ("bad_passes", 5, 0.05, Standing.SHOWN, "yes"),
+        ("bad_passes", 6, 0.05, Standing.OPEN, "not shown"),
+        ("bad_passes", 12, 0.05, Standing.BROKEN, "NO"),
+        ("clean_passes", 95, 0.95, Standing.SHOWN, "yes"),
+        ("clean_passes", 94, 0.95, Standing.OPEN, "not shown"),
+        ("clean_passes", 85, 0.95, Standing.BROKEN, "NO"),
+    ],
+)
+def test_a_rate_that_is_not_as_wanted_is_not_said_to_be_kept(
+    kind: str, count: int, limit: float, standing: Standing, said: str
+) -> None:
+    """One draw beyond what is wanted is enough, and the exit code hangs on the interval alone."""
+    one = Promise(kind, counted("h^2", count, 0, 100 - count), count, limit)
+    assert one.standing is standing
+    assert one.kept == (standing is not Standing.BROKEN)
+    assert words.promise(one)[-1] == said
+    assert words.sentence(one).endswith(
+        {"yes": "wanted: kept", "NO": "wanted: not kept", "not shown": "wanted: not shown to be kept, nor broken"}[said]
+    )
+
+
 def test_every_sequence_is_measured_on_every_level() -> None:
     asked: list[object] = []
 
@@ -189,6 +214,7 @@ def test_the_page_is_that_of_the_table() -> None:
     assert files.markdown(rows) == (DOCS / "power.md").read_text()
     text = (DOCS / "power.md").read_text()
     assert text.count("| NO |") == sum(not one.kept for one in promises(rows))
+    assert text.count("| not shown |") == sum(one.standing is Standing.OPEN for one in promises(rows)) == 4
 
 
 @pytest.mark.parametrize("item", [("h^2", "quick", 0.03), ("h^1.7", "default", 0.03)])

@@ -8,6 +8,7 @@ often: two sequences that differ by less than the scatter cannot be told apart.
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from enum import StrEnum
 from functools import partial
 from math import sqrt
 from zlib import crc32
@@ -158,6 +159,14 @@ def measure(draws: int = DRAWS, seed: int = SEED, mapping: Callable[..., Iterabl
     return list(mapping(partial(row, draws=draws, seed=seed), items))
 
 
+class Standing(StrEnum):
+    """Standing of a promise: its rate is as wanted, or its interval alone reaches to it, or not even that."""
+
+    SHOWN = "shown"
+    OPEN = "not shown"
+    BROKEN = "broken"
+
+
 @dataclass(frozen=True)
 class Promise:
     """Promise of the rule on some levels: the row that comes nearest to breaking it, its rate and the limit.
@@ -184,6 +193,13 @@ class Promise:
         """Whether the interval of the rate reaches to the right side of the limit."""
         low, high = interval(self.count, self.row.draws)
         return high >= self.limit if self.kind == "clean_passes" else low <= self.limit
+
+    @property
+    def standing(self) -> Standing:
+        """Standing by rate and interval."""
+        rate = self.count / self.row.draws
+        wanted = rate >= self.limit if self.kind == "clean_passes" else rate <= self.limit
+        return Standing.SHOWN if wanted else Standing.OPEN if self.kept else Standing.BROKEN
 
 
 def promises(rows: Sequence[Row]) -> list[Promise]:

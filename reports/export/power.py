@@ -21,7 +21,7 @@ order is expected, and the errors are C = 1. A sequence is *sound* if it tends t
 pair of cells (1.8 to 2.3), and at most 10 % of its finest error is a leak or a floor, and *bad* otherwise. A floor of
 1e−5 is sound down to h = 1/32 and bad at h = 1/128; h² / (1 + 16 h), of order 1.62 at h = 1/32, the other way round.
 INCONCLUSIVE is never wrong; FAIL of a sound sequence and PASS of a bad one are. `verify power --out docs` writes this
-page, its [table](power.csv) and its figure, and ends with 1 if a promise is not kept.
+page, its [table](power.csv) and its figure, and ends with 1 if a promise is broken.
 
 ![Fractions of PASS, FAIL and INCONCLUSIVE for each sequence, set of levels and scatter](power.png)
 
@@ -31,7 +31,8 @@ The worst of all sequences and scatters but those that no rule can tell, and cle
 
 {promises}
 
-A promise is kept unless the whole interval of its rate is on the wrong side.
+"Yes": the rate is as wanted. "Not shown": it is not, while its interval reaches to what is wanted, so these draws show
+neither that the promise is kept nor that it is broken. "NO", broken: the whole interval is on the wrong side.
 
 ## What no rule can tell
 

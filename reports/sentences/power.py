@@ -4,11 +4,13 @@ import re
 from collections.abc import Sequence
 
 from mpm_verify.cases.judging.known import CELLS
-from mpm_verify.cases.judging.power import SAFE, SOUND, Promise, Row, floors, interval
+from mpm_verify.cases.judging.power import SAFE, SOUND, Promise, Row, Standing, floors, interval
 from mpm_verify.reports import words
 
 RAISED = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 KINDS = {"bad_passes": "worst bad passes", "sound_fails": "worst sound fails", "clean_passes": "clean passes"}
+KEPT = {Standing.SHOWN: "yes", Standing.OPEN: "not shown", Standing.BROKEN: "NO"}
+ANSWERS = {Standing.SHOWN: "kept", Standing.OPEN: "not shown to be kept, nor broken", Standing.BROKEN: "not kept"}
 HEAD = ("levels", "rate", "sequence", "scatter", "%", "95 % interval", "wanted", "kept")
 
 
@@ -44,14 +46,14 @@ def promise(one: Promise) -> tuple[str, ...]:
     low, high = interval(one.count, row.draws)
     bound = f"{'≥' if one.kind == 'clean_passes' else '≤'} {100 * one.limit:.0f}"
     return (row.levels, KINDS[one.kind], name(row.sequence), scatter(row.scatter), f"{100 * one.count / row.draws:.1f}",
-            f"{100 * low:.1f} to {100 * high:.1f}", bound, "yes" if one.kept else "NO")  # fmt: skip
+            f"{100 * low:.1f} to {100 * high:.1f}", bound, KEPT[one.standing])  # fmt: skip
 
 
 def sentence(one: Promise) -> str:
     """Promise in a sentence, for JSON and for others who quote it."""
     levels, what, sequence, fraction, rate, ends, bound, _ = promise(one)
     told = f"{levels}: {what}, {sequence} with {fraction} scatter, in {rate} % of draws"
-    return f"{told} (95 % interval {ends}), {bound} % wanted: {'kept' if one.kept else 'not kept'}"
+    return f"{told} (95 % interval {ends}), {bound} % wanted: {ANSWERS[one.standing]}"
 
 
 def hidden(rows: Sequence[Row]) -> list[str]:

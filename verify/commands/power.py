@@ -26,7 +26,7 @@ def power(
     jobs: Jobs = None,
     json_output: Json = False,
 ) -> int:
-    """Measure power and safety of the order rule. Exit codes: 0 all that is promised is kept, 1 not."""
+    """Measure power and safety of the order rule. Exit codes: 0 no promise is broken, 1 one is."""
     from mpm_verify.verify.run import check_count, usage
 
     with usage():
@@ -118,7 +118,7 @@ def document(rows: "Sequence[Row]") -> dict[str, Any]:
         {
             "kind": one.kind, "levels": one.row.levels, "sequence": one.row.sequence, "scatter": one.row.scatter,
             "rate": one.count / one.row.draws, "interval": interval(one.count, one.row.draws), "limit": one.limit,
-            "kept": one.kept, "sentence": words.sentence(one),
+            "kept": one.kept, "standing": one.standing, "sentence": words.sentence(one),
         }
         for one in promises(rows)
     ]  # fmt: skip
