@@ -6,8 +6,8 @@ and they take m a of FLIP, and m v_after - m v_before over dt of PIC. Gradients 
 cancel in the sum over all nodes, and in each step
     change of momentum / dt = R of all walls + weight and traction + damping
 to round-off, as long as all that hand a force to a node hand it mass too. A node below the mass cut-off takes no part
-in the equation of motion, so its force moves nobody: beside a surface that rises by a millionth of a cell, where domains
-have a fixed size, and at points of an edge, which have traction and no mass. `Balance.missing` has what it dropped.
+in the equation of motion, so its force moves nobody: beside a surface that rises by a millionth of a cell, of domains
+of a fixed size, and at points of an edge, which have traction and no mass. `Balance.missing` has what it dropped.
 A transfer that filters velocities (`filters_walls`) does so after R is taken: R is not known there.
 """
 

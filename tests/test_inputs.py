@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fixtures_command import Call, caller
 
 from mpm_verify.cases.mms.execute import execute
 from mpm_verify.cases.mms.run import Run
@@ -62,6 +63,31 @@ def test_edges_of_files_as_they_stand(
     found = errors(path, (8, 16))
     assert found[0] == pytest.approx(recorded, rel=0.01)
     assert orders(found, (8, 16))[0] == pytest.approx(order, abs=0.02)
+
+
+@pytest.fixture
+def call(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> Call:
+    return caller(monkeypatch, capsys, tmp_path)
+
+
+@pytest.mark.slow
+def test_strains_too_large_for_the_material_end_on_a_floor_that_is_named(tmp_path: Path, call: Call) -> None:
+    """As it stands F - I reaches 0.047 of a material of small strains: orders 1.96 1.68 0.94 0.24. With A=1e-6 PASS."""
+    path = written(tmp_path, POLYNOMIAL)
+    code, out, _ = call("mms", "--quick", "--solution", path, "--no-page")
+    said = " ".join(out.split())
+    assert code == 1
+    assert all(f" {order} " in said for order in ("1.96", "1.68", "0.94", "0.24"))
+    assert "FAIL" in said
+    assert "it falls to a floor of 3.8e-5" in said
+    stall = said[said.index("STALL") :]
+    assert "Strains too large for a material of small strains" in stall
+    assert "a floor of 5.1e-05" in stall
+    assert "Cell crossings" not in stall
+    code, out, _ = call("mms", "--quick", "--solution", f"{path}:A=1e-6", "--no-page")
+    assert code == 0
+    assert "order 1.99 (" in " ".join(out.split())
+    assert "STALL" not in out
 
 
 @pytest.mark.slow

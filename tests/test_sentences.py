@@ -209,6 +209,8 @@ def stalled() -> Any:
             stiffness=5e3,
             strays=True,
             edge_noise=True,
+            strain=0.05,
+            size=0.1,
         )
     )
     assert found is not None

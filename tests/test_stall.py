@@ -220,6 +220,61 @@ def test_noise_beside_a_prescribed_edge_is_a_stall_without_a_fall() -> None:
     assert explain(replace(noisy, edge_noise=True, errors=(9.69e-5, 2.51e-5, 5.71e-6))) is None
 
 
+def test_noise_beside_a_prescribed_edge_is_measured_by_a_run_without_it_or_ranks_below_what_is() -> None:
+    noisy = Measured((8, 16, 32), (2.11e-4, 1.19e-4, 4.68e-5), (0.1, 0.2, 0.4), (None,) * 3, 4, edge_noise=True)
+    excess = 4.68e-5 - 2.11e-4 / 16
+    shown = explain(replace(noisy, quiet=6.7e-6))
+    same = explain(replace(noisy, quiet=4.68e-5))
+    other = explain(replace(noisy, halved=1.3e-5))
+    assert shown is not None
+    assert same is not None
+    assert other is not None
+    one = cause(shown, CauseCode.EDGE_NOISE)
+    assert (one.finding, one.weight) == (Finding.SHOWN, pytest.approx(min(1.0, 4.01e-5 / excess)))
+    assert "changes the finest error by −85.7 %" in sentences.measured(one).replace("\u2212", "−")
+    assert (cause(same, CauseCode.EDGE_NOISE).finding, named_in(same)) == (Finding.EXCLUDED, [])
+    assert named_in(other) == [CauseCode.TIME_STEP]
+    assert cause(other, CauseCode.EDGE_NOISE).weight <= 0.75 * (1 - cause(other, CauseCode.TIME_STEP).weight)
+
+
+def test_crossings_that_the_excess_grows_with_rank_above_noise_that_nobody_measured() -> None:
+    found = stall(crossings=(2.0, 4.0, 8.0, 16.0), errors=(6.4e-3, 1.6e-3, 5e-4, 4 * AT_64), edge_noise=True)
+    assert named_in(found) == [CauseCode.CROSSINGS]
+    assert cause(found, CauseCode.EDGE_NOISE).weight == 0
+
+
+POLYNOMIAL = Measured(  # linear_elastic, F - I up to 0.047: measured, tests/inputs
+    (8, 16, 32), (3.044e-4, 8.497e-5, 5.414e-5), (0.0, 0.0319, 0.463), (None,) * 3, 4, strain=0.0469, size=5.4e-3
+)
+
+
+def test_strains_too_large_for_a_material_of_small_strains() -> None:
+    """The floor is 3.9e-5 and 5.1e-5 on two pairs of cells, a fifth of strain times motion; crossings are not it."""
+    assert POLYNOMIAL.floors == pytest.approx([3.9e-5, 5.14e-5], rel=0.01)
+    found = explain(POLYNOMIAL)
+    assert found is not None
+    assert named_in(found) == [CauseCode.SMALL_STRAIN]
+    assert (found.named[0].weight, found.named[0].finding) == (1.0, Finding.PRESENT)
+    assert cause(found, CauseCode.CROSSINGS).weight == 0
+    assert "F − I reach 4.7 %".replace("−", "\u2212") in sentences.measured(found.named[0])
+    assert "a floor of 5.1e-05" in sentences.measured(found.named[0])
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"strain": 0.0},  # a material of finite strain
+        {"strain": 1e-3},  # strains that are too small for it: 5e-6 of u
+        {"errors": (4.83e-4, 3.31e-4, 8.38e-4)},  # grows, as of mpm where particles cross: its floor too, 2.7-fold
+    ],
+)
+def test_strains_that_do_not_explain_a_stall(changes: dict[str, object]) -> None:
+    found = explain(replace(POLYNOMIAL, **changes))
+    assert found is not None
+    assert CauseCode.SMALL_STRAIN not in named_in(found)
+    assert CauseCode.CROSSINGS in named_in(found) or not named_in(found)
+
+
 def crossed_once() -> dict[str, object]:
     """Faces crossed on each level."""
     return {"crossings": (0.5, 1.0, 1.0, 1.0)}

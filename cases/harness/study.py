@@ -195,6 +195,11 @@ class ResultRecord(Generic[R]):
             raise ValueError("a finished run has errors that are finite and not negative")
 
     @property
+    def strain(self) -> float:
+        """Largest component of F - I where the material is one of small strains and these are not; else 0."""
+        return 0.0
+
+    @property
     def still(self) -> bool:
         """Whether nothing moves in an answer of somebody else's solver."""
         return False

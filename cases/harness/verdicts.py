@@ -144,7 +144,15 @@ def _measured(found: Finding, known: Mapping[Head, Series], results: Results, pe
         _twin(series, known, results, cells, "smoothing", lambda run: run.stiffness),
         series.first.strays,
         series.first.edge_noise,
+        _quiet(series, known, results, cells),
+        max((result.strain for _, result in done), default=0.0),
     )
+
+
+def _quiet(series: Series, known: Mapping[Head, Series], results: Results, cells: Sequence[int]) -> float | None:
+    """Least error of the refinements that damp the noise beside an edge, by another transfer or stress update."""
+    twins = (_twin(series, known, results, cells, name, lambda run: run.edge_noise) for name in ("transfer", "stress"))
+    return min((found for found in twins if found is not None), default=None)
 
 
 def _twin(

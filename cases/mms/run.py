@@ -5,7 +5,7 @@ from math import inf, isqrt, sqrt
 from typing import Any, ClassVar, get_args
 
 from mpm_verify.cases.harness.study import ResultRecord, RunRecord, axis
-from mpm_verify.mms.blind_spots import BlindSpot
+from mpm_verify.mms.blind_spots import BlindSpot, BlindSpotCode
 from mpm_verify.mms.duration import quarters
 from mpm_verify.solver.plugins import (
     LAYOUTS,
@@ -282,6 +282,11 @@ class Result(ResultRecord[Run]):
     log: tuple[str, ...] = ()  # last lines that a solver of somebody else printed
     exit_code: int | None = None  # of that solver
     told: str = ""  # version that its result.json states
+
+    @property
+    def strain(self) -> float:
+        """Largest component of F - I where the material is one of small strains and these are not; else 0."""
+        return max((spot.numbers["strain"] for spot in self.audit if spot.code is BlindSpotCode.MODEL), default=0.0)
 
     @property
     def still(self) -> bool:

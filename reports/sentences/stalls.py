@@ -16,6 +16,7 @@ NAMES = {
     CauseCode.LOCKING: "volumetric locking",
     CauseCode.OTHER_SOLID: "another solid",
     CauseCode.EDGE_NOISE: "noise beside a prescribed edge",
+    CauseCode.SMALL_STRAIN: "strains too large for a material of small strains",
 }
 UNMEASURED = {
     CauseCode.QUADRATURE: "one particle count only; a list for --ppc adds others",
@@ -26,6 +27,7 @@ UNMEASURED = {
     CauseCode.LOCKING: "the material can be compressed",
     CauseCode.OTHER_SOLID: "the material is the one of the problem",
     CauseCode.EDGE_NOISE: "no edge is prescribed, or the step damps it",
+    CauseCode.SMALL_STRAIN: "the material is one of finite strain, or strains are small",
 }
 
 
@@ -134,16 +136,24 @@ def _other_solid(n: dict[str, float], peer: Peer | None) -> str:
 
 
 def _edge_noise(n: dict[str, float], peer: Peer | None) -> str:
-    return (
-        "FLIP keeps the part of the particles' velocities that the grid does not see, and the spring of the edge "
-        "feeds it; --stress usl damps it, and --transfer apic has none"
-    )
+    told = "FLIP keeps the part of the particles' velocities that the grid does not see, and the spring of the edge "
+    told += "feeds it; "
+    if "change" not in n:
+        return f"{told}it was not measured here: --stress usl damps it, and --transfer apic has none"
+    return f"{told}a run without it changes the finest error by {words.percent(n['change'], 1, '+')}"
+
+
+def _small_strain(n: dict[str, float], peer: Peer | None) -> str:
+    told = f"components of F − I reach {words.percent(n['strain'], 1)}, and the stress is that of the energy "
+    told += f"to first order alone: up to {n['strain'] * n['size']:.1e} of u; the two finest errors leave a floor of "
+    return f"{told}{n['floor']:.1e} where it adds in the square; a smaller amplitude or finite strain removes it"
 
 
 MEASURED = {
     CauseCode.LOCKING: _locking,
     CauseCode.OTHER_SOLID: _other_solid,
     CauseCode.EDGE_NOISE: _edge_noise,
+    CauseCode.SMALL_STRAIN: _small_strain,
     CauseCode.CROSSINGS: _crossings,
     CauseCode.QUADRATURE: _quadrature,
     CauseCode.GAPS: _gaps,
