@@ -29,7 +29,7 @@ DASH, MINUS, TIMES = "\N{EN DASH}", "\N{MINUS SIGN}", "\N{MULTIPLICATION SIGN}"
 
 def method(name: str) -> str:
     """Name of a method as people write it; the command's word where nothing else is known."""
-    return METHODS.get(name, label(name).replace("_", " "))
+    return METHODS.get(name, label(name))
 
 
 def way(name: str) -> str:

@@ -24,6 +24,7 @@ from mpm_verify.cases.solvers.levels import Levels, levels
 from mpm_verify.mms.export.case import Names, export
 from mpm_verify.mms.export.start import named
 from mpm_verify.mms.manufacture import manufacture
+from mpm_verify.reports import words as spelt
 from mpm_verify.reports.export.junit import write_junit
 from mpm_verify.reports.export.summary import markdown
 from mpm_verify.reports.sentences import commands, failures, own_solver
@@ -350,6 +351,16 @@ def test_the_study_has_the_name_of_the_program() -> None:
     assert {run.method for run in made.runs} == {"test_own_solver"}
     assert [run.cells for run in made.runs if run.courant == 0.4] == [8, 16, 32, 64]
     assert "test_own_solver.py against the manufactured solution bump" in made.title
+
+
+def test_a_program_is_called_as_its_file_is(tmp_path: Path) -> None:
+    """One name in the title, the tables and the sentences: `run.sh`, not `run_sh` and `run sh`."""
+    script = tmp_path / "run_mine.sh"
+    script.write_text("#!/bin/sh\n")
+    script.chmod(0o755)
+    made = build(Asked("mms", {"solver": [f"{script} {{case}} {{out}}"], "solution": ["bump"]}), "verify mms")
+    assert {run.method for run in made.runs} == {"run_mine.sh"} == {spelt.method(run.method) for run in made.runs}
+    assert made.title.startswith("run_mine.sh against")
 
 
 # ---- the examples, against the digits that eight programs agree on

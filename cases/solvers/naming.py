@@ -15,5 +15,5 @@ def version_of(solver: str) -> str:
 
 
 def method_of(solver: str) -> str:
-    """Name of its program as that of a method."""
-    return re.sub(r"\W+", "_", program(solver).removesuffix(".py"))
+    """Name of its program as that of a method: the file's, `run.sh`, of Python without its ending."""
+    return re.sub(r"[^\w.-]+", "_", program(solver).removesuffix(".py"))
