@@ -47,11 +47,16 @@ class Walls:
     def touch(self, grid: Grid, dt: float, cutoff: float) -> None:
         """Set what depends on momentum and force at the nodes, see solver/friction.py; of these nothing does."""
 
+    def damp(self, apply: "Apply", grid: Grid, dt: float, cutoff: float) -> float:
+        """Damp by `apply` what is not held, and return the work that this takes in the step; see Damping.apply."""
+        return apply(grid, self, dt, cutoff)
+
     def in_strain(self) -> tuple[NDArray[np.bool_], Floats, Floats]:
         """Components held of velocities that strain the particles and do not move them: `held`, `value` and `rate`."""
         return self.held, self.value, self.rate
 
 
+Apply = Callable[[Grid, Walls, float, float], float]  # of damping
 Rule = Callable[[Floats, float, float], tuple[NDArray[np.bool_], Floats, Floats]]
 
 

@@ -12,9 +12,16 @@ node that its force tears off would be held, and one that is pressed let go. Fri
 that its impulse on the slip is an energy that is taken, in each step and at each node, and a node that touches one of
 two walls does not enter the other. The reaction is always handed on to the particles, whatever `Walls.stops` says:
 without it they keep a velocity with which they do not move, and momentum does not add up. Nodes that touch are not
-damped, as those of other walls.
+damped, as those of other walls. Damping may turn the velocity of one that leaves into the wall: of those that it has
+damped contact is decided again, so that no node ends a step with a velocity into a wall, whatever damps it, and what
+damping takes is counted on the velocity that the wall leaves.
 
 A node touches as soon as it has mass, which is while a body is still up to a cell away from the wall.
+
+Update-stress-first strains before it knows the forces, by what touched at the end of the step before, at first nothing.
+So a node that strikes a wall with v_n is strained a step late, by v_n dt / dx, which vanishes with dt; one that leaves
+moves with the wall until its step begins, and is strained in time. Contact by the sign of the velocity then would hold
+a resting body that rings in each half of its period that shortens it, and not in the other: its strains would add up.
 """
 
 from dataclasses import dataclass, field
@@ -23,7 +30,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mpm_verify.solver._jit import F1, F2, I1, f8, flag, kernel
-from mpm_verify.solver.boundary import Kind, MovingWalls, Walls, behind, box
+from mpm_verify.solver.boundary import Apply, Kind, Walls, behind, box
 from mpm_verify.solver.state import Floats, Grid, Ints
 
 Masks = flag[:, ::1]
@@ -42,7 +49,7 @@ def touch(
         for a in range(2):
             held[i, a] = held_in_strain[i, a] = always[i, a]
             value[i, a], rate[i, a] = wall[i, a], wall_rate[i, a]
-            free = (momentum_force[i, a] + dt * momentum_force[i, 2 + a]) / mass[i] if mass[i] > cutoff else 0.0
+            free = (momentum_force[i, a] + dt * momentum_force[i, 2 + a]) / mass[i] if mass[i] > cutoff else wall[i, a]
             if not always[i, a] and (wall[i, a] - free) * normal[i, a] > 0.0:
                 held[i, a] = held_in_strain[i, a] = True
                 rate[i, a] = (wall[i, a] - momentum_force[i, a] / mass[i]) / dt
@@ -69,7 +76,8 @@ class FrictionalWalls(Walls):
     Parameters
     ----------
     still
-        Walls without friction beside them. Its `value` is the velocity of walls with friction too.
+        Walls without friction beside them, of any kind: they are moved, and handed on what they `stops`. Its `value`
+        is the velocity of walls with friction too, and a component that it holds has no friction.
     normal
         Normal of the walls with friction, into the body: 1, -1, or 0 where there is none, (n,2).
     mu
@@ -80,7 +88,7 @@ class FrictionalWalls(Walls):
     held, value, rate
         As of any walls, with the components that friction gives in the step.
     held_in_strain
-        Components that have the wall's velocity, (n,2): those that slip have not.
+        Components that have the wall's velocity, (n,2): those that slip have not, and at first none that may leave.
     taken
         Energy per thickness that friction has taken so far: its impulses on the slip. No step makes it less.
 
@@ -98,19 +106,39 @@ class FrictionalWalls(Walls):
 
     def __post_init__(self) -> None:
         self.nodes = np.flatnonzero(self.normal.any(axis=1))
-        self.held_in_strain = self.held | (self.normal != 0)
+        self.held_in_strain = self.still.held.copy()
+        self.stops |= self.still.stops
 
     def move(self, grid: Grid, t: float, dt: float) -> None:
-        """Set the walls without friction for the step from t to t + dt."""
+        """Set the walls without friction for the step from t to t + dt; what touches is what touched before it."""
+        touched = self.held_in_strain & ~self.still.held
         self.still.move(grid, t, dt)
-        if isinstance(self.still, MovingWalls):
-            self.held, self.value, self.rate = self.still.held.copy(), self.still.value.copy(), self.still.rate.copy()
+        self.held_in_strain = touched | self.still.held
+        self.held, self.value, self.rate = self.still.held.copy(), self.still.value.copy(), self.still.rate.copy()
 
     def touch(self, grid: Grid, dt: float, cutoff: float) -> None:
         """Decide what sticks, slips or leaves in the step, by momentum and force at the nodes."""
+        self.decide(self.nodes, grid, dt, cutoff)
+
+    def damp(self, apply: Apply, grid: Grid, dt: float, cutoff: float) -> float:
+        """Damp the nodes that do not touch, decide what of them damping brings into a wall, and return its work.
+
+        Damping counts its work on the velocity of a node that is free; the wall changes that, and half of it the mean.
+        """
+        left = self.nodes[~self.held[self.nodes].all(axis=1)]
+        undamped = grid.force[left].copy()
+        work = apply(grid, self, dt, cutoff)
+        self.decide(left, grid, dt, cutoff)
+        new = grid.momentum[left] + dt * grid.force[left]
+        pushed = self.held[left] & ~self.still.held[left]
+        change = np.where(pushed, self.value[left] - new / np.maximum(grid.mass[left], cutoff)[:, None], 0.0)
+        return work + 0.5 * dt * float(((undamped - grid.force[left]) * change).sum())
+
+    def decide(self, nodes: Ints, grid: Grid, dt: float, cutoff: float) -> None:
+        """Decide it at some of the nodes."""
         still = self.still
         self.taken += touch(
-            self.nodes, self.normal, self.mu, grid.mass, grid.momentum_force, still.held, still.value, still.rate,
+            nodes, self.normal, self.mu, grid.mass, grid.momentum_force, still.held, still.value, still.rate,
             self.held, self.held_in_strain, self.value, self.rate, dt,
             cutoff,
         )  # fmt: skip

@@ -143,7 +143,7 @@ def equation_of_motion(model: Model) -> None:
     model.tell("before_forces")
     w.touch(g, model.dt, model.cutoff)
     if model.damping:
-        model.damped += model.damping.apply(g, w, model.dt, model.cutoff)
+        model.damped += w.damp(model.damping.apply, g, model.dt, model.cutoff)
     solve(
         g.mass,
         g.momentum_force,

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from mpm_verify.solver import friction
+from mpm_verify.solver.boundary import Walls
 
 Patch = pytest.MonkeyPatch
 NAMES = ("nodes", "normal", "mu", "mass", "momentum_force", "always", "wall", "wall_rate", "held", "held_in_strain",
@@ -102,6 +103,22 @@ def not_handed_on(patch: Patch) -> None:
     around(after=lambda named: named["rate"].fill(0.0))(patch)
 
 
+def held_at_first(patch: Patch) -> None:
+    """All nodes of a wall touch before the first step."""
+    original = friction.FrictionalWalls.__post_init__
+
+    def begin(self: friction.FrictionalWalls) -> None:
+        original(self)
+        self.held_in_strain = self.held | (self.normal != 0)
+
+    patch.setattr(friction.FrictionalWalls, "__post_init__", begin)
+
+
+def damped_after(patch: Patch) -> None:
+    """Contact is decided before damping alone."""
+    patch.setattr(friction.FrictionalWalls, "damp", Walls.damp)
+
+
 FRICTION = {
     "friction 1.1": (around(scaled(1.1)), ("friction_slide", "friction_momentum", "friction_step")),
     "friction 0.98": (around(scaled(0.98)), ("friction_slide", "friction_stick", "friction_step")),
@@ -112,5 +129,7 @@ FRICTION = {
     "slip strained as stuck": (around(after=sticks), ("friction_step",)),
     "friction one way": (around(after=one_way), ("friction_mirror", "friction_slide", "friction_budget")),
     "coefficients swapped": (around(other_coefficient), ("friction_step",)),
+    "touches before the first step": (held_at_first, ("friction_leave", "friction_step")),
+    "damping after contact": (damped_after, ("friction_damped",)),
     "reaction of friction kept": (not_handed_on, ("friction_momentum", "friction_step")),
 }

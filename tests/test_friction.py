@@ -1,6 +1,7 @@
 """Walls with friction: blocks on an incline against rigid ones, momentum, energy, the mirror, threads."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from math import cos, radians, sin
 from typing import Any
 
@@ -14,7 +15,9 @@ from mpm_verify.solver.energy_budget import Budget, kinetic, residual
 from mpm_verify.solver.friction import FrictionalWalls, frictional
 from mpm_verify.solver.layout import rectangle
 from mpm_verify.solver.material.hypoelastic import Hypoelastic
+from mpm_verify.solver.model import Observer
 from mpm_verify.solver.plugins import METHODS, TRANSFERS, create
+from mpm_verify.solver.pushed import pushed
 from mpm_verify.solver.state import Grid
 from mpm_verify.solver.step import Model, Scheme, advance
 
@@ -189,3 +192,141 @@ def test_walls_that_move_and_what_is_refused() -> None:
             frictional(grid, ("free", "free", wrong, "free"))
     with pytest.raises(ValueError, match="no wall 'sandy'"):
         frictional(grid, ("free", "free", "sandy", "free"))  # type: ignore[arg-type]
+
+
+def flown(stress: str, v: float, courant: float = 0.4) -> Model:
+    """Block without stress on a floor, after a step of its flight with v off it."""
+    m = incline(0.3, v0=0.0, scheme=Scheme(stress=stress))  # type: ignore[arg-type]
+    m.particles.sigma[:], m.particles.b[:], m.particles.v[:] = 0.0, 0.0, (0.0, v)
+    m.dt = courant * DX / STIFF.wave_speed()
+    advance(m, lambda particles, t: None)
+    return m
+
+
+@pytest.mark.parametrize("stress", ["usl", "musl", "usf"])
+def test_nothing_strains_a_body_that_leaves(stress: str) -> None:
+    """With update-stress-first neither, which strains before it knows the forces."""
+    m = flown(stress, 1.0)
+    for _ in range(2):
+        advance(m, lambda particles, t: None)
+    assert np.abs(m.particles.F - np.eye(2)).max() < 1e-15
+    assert np.abs(m.particles.v - [0.0, 1.0]).max() < 1e-15
+
+
+@pytest.mark.parametrize("courant", [0.4, 0.2])
+def test_a_strike_strains_a_step_late_with_update_stress_first(courant: float) -> None:
+    """By v dt / dx, of first order in dt."""
+    at_once, late = flown("usl", -1.0, courant), flown("usf", -1.0, courant)
+    strain = courant / STIFF.wave_speed()
+    assert np.abs(at_once.particles.F - np.eye(2)).max() == pytest.approx(strain, rel=1e-9)
+    assert np.abs(late.particles.F - np.eye(2)).max() == 0.0
+    advance(late, lambda particles, t: None)
+    assert 0.7 * strain < np.abs(late.particles.F - np.eye(2)).max() < strain
+
+
+def one_node(walls_rate: float = 0.0) -> tuple[Grid, FrictionalWalls]:
+    """Grid of nodes with the mass 1 but those of the right side, above a floor with friction."""
+    grid = Grid(1.0, np.zeros(2), np.array([2.0, 1.0]))
+    walls = frictional(grid, ("free", "free", 0.5, "free"))
+    assert isinstance(walls, FrictionalWalls)
+    grid.mass[grid.nodes[:, 0] < 1.5] = 1.0
+    walls.still.value[:, 1] = walls_rate
+    return grid, walls
+
+
+@pytest.mark.parametrize(("kind", "ends"), [("local", -0.35), ("objective", 0.1 - 0.5 * 0.9 / 10**0.5)])
+def test_damping_turns_no_node_into_the_wall(kind: Any, ends: float) -> None:
+    """A node that leaves with 0.1 ends at `ends` with damping alone; the wall holds it, and rubs by what it gives."""
+    grid, walls = one_node()
+    floor = (grid.nodes[:, 1] <= 0) & (grid.mass > 0)
+    grid.momentum_force[grid.mass > 0] = (3.0, 1.0, 0.0, -0.9)
+    walls.touch(grid, 1.0, 1e-12)
+    assert not walls.held.any()
+    before = grid.momentum + grid.force
+    work = walls.damp(Damping(0.5, kind).apply, grid, 1.0, 1e-12)
+    new = grid.momentum + grid.force
+    assert ends < 0
+    assert new[floor, 1] == pytest.approx(ends)
+    assert walls.held[floor].all()
+    assert (walls.value[floor, 1] == 0.0).all()
+    assert walls.value[floor, 0] == pytest.approx(new[floor, 0] + 0.5 * new[floor, 1])
+    after = np.where(walls.held, walls.value, new)
+    assert work == pytest.approx(((before - new) * (grid.momentum + after))[grid.mass > 0].sum() / 2)
+    assert not walls.held[~floor].any()
+
+
+@pytest.mark.parametrize("kind", ["local", "objective"])
+def test_energy_adds_up_where_damping_meets_a_wall(kind: Any) -> None:
+    """Block that strikes the floor and flies off, half of its force damped: no velocity into the floor, none of the
+    energy missing."""
+
+    class Into(Observer):
+        def __init__(self) -> None:
+            self.least = 0.0
+
+        def after_motion(self, model: Model) -> None:
+            floor = (model.grid.nodes[:, 1] == 0) & (model.grid.mass > model.cutoff)
+            self.least = min(self.least, float(model.grid.velocity[floor, 1].min()))
+
+    m = incline(0.3, damping=Damping(0.5, kind))
+    m.particles.v[:] = (0.5, -1.0)
+    budget, into = Budget(m.particles.b[0].copy(), kinetic(m.particles)), Into()
+    m.watch(budget)
+    m.watch(into)
+    first = budget.terms(m)
+    for _ in range(100):
+        advance(m, lambda particles, t: None)
+    assert abs(residual(budget.terms(m), first)) < 1e-10 * first["kinetic"]
+    assert into.least == 0.0
+
+
+def test_a_wall_with_friction_that_moves() -> None:
+    """Nodes without mass are left alone: there is nothing to hold; those with mass take its velocity."""
+    grid, walls = one_node(1.0)
+    floor = grid.nodes[:, 1] <= 0
+    walls.touch(grid, 0.1, 1e-12)
+    full = grid.mass > 0
+    assert walls.held[floor & full, 1].all()
+    assert (walls.value[floor & full, 1] == 1.0).all()
+    assert not walls.held[~full].any()
+    assert np.isfinite(walls.rate).all()
+    assert np.isfinite(walls.taken)
+
+
+def test_pushed_walls_beside_friction() -> None:
+    """A plate that is pushed beside a floor with friction moves, and what it hands on, and what it strains."""
+    grid = Grid(DX, np.zeros(2), np.ones(2))
+    floor = frictional(grid, ("free", "free", 0.5, "free"))
+    assert isinstance(floor, FrictionalWalls)
+    there = grid.nodes[:, 0] >= 1.0 - 1e-9
+    plate = pushed(replace(floor.still, stops=True), there, 0, lambda t: -0.5 * t**2)
+    walls = FrictionalWalls(floor.held, floor.value, floor.rate, plate, floor.normal, floor.mu)
+    assert walls.stops
+    walls.move(grid, 1.0, 0.1)
+    assert walls.value[there, 0] == pytest.approx(-1.05)
+    assert walls.rate[there, 0] == pytest.approx(-1.0)
+    assert walls.held[there, 0].all()
+    assert not walls.held[~there].any()
+
+
+def test_a_gate_beside_friction_strains_while_it_is_there() -> None:
+    """Its nodes have its velocity in the strain of musl and usf too, and not after it is gone; contact is kept."""
+    grid = Grid(DX, np.zeros(2), np.ones(2))
+    floor = frictional(grid, ("free", "free", 0.5, "free"))
+    assert isinstance(floor, FrictionalWalls)
+    gate = grid.nodes[:, 0] > 0.6
+
+    def rule(nodes: Any, t: float, dt: float) -> Any:
+        held = np.zeros(nodes.shape, bool)
+        held[gate, 0] = 0.5 < t < 1.5
+        return held, np.zeros(nodes.shape), np.zeros(nodes.shape)
+
+    walls = FrictionalWalls(floor.held, floor.value, floor.rate, moving(grid, rule), floor.normal, floor.mu)
+    grid.mass[:] = 1.0
+    grid.momentum_force[:] = (1.0, -1.0, 0.0, 0.0)
+    for t in (0.0, 1.0, 2.0):
+        walls.move(grid, t, 0.1)
+        held, _, _ = walls.in_strain()
+        assert held[gate & (grid.nodes[:, 1] > 0), 0].all() == (t == 1.0)
+        assert held[grid.nodes[:, 1] <= 0, 1].all() == (t > 0.0)  # what touched in the step before
+        walls.touch(grid, 0.1, 1e-12)

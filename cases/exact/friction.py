@@ -14,18 +14,20 @@ from numpy.typing import NDArray
 from mpm_verify.cases.exact.body import DX, FILLED, Subject, Variant, by_id, grid, layout, modelled, populated, shaken
 from mpm_verify.cases.exact.body import variants as every
 from mpm_verify.cases.exact.dense import Dense, Sigma, Weights
-from mpm_verify.cases.exact.motion import still
+from mpm_verify.cases.exact.motion import still, taken
 from mpm_verify.cases.exact.step import KNOWN
 from mpm_verify.cases.exact.symmetry import moved
 from mpm_verify.mms.constitutive.driver import random
 from mpm_verify.mms.constitutive.tested import Pairs, Part, Reason, Tested, attempt, bound, farthest, not_asked, off
 from mpm_verify.solver.boundary import Walls, box
+from mpm_verify.solver.damping import Damping
 from mpm_verify.solver.energy_budget import Budget, kinetic, residual
 from mpm_verify.solver.friction import FrictionalWalls, Sides
 from mpm_verify.solver.state import Floats
 from mpm_verify.solver.step import advance
 
 MU, PRESSED = 0.4, 0.02  # friction coefficient, and the force into the wall over c / dt
+HALF = 0.5  # of the force, damped
 SIDES: Sides = (0.3, "free", 0.5, "free")
 TURNED: dict[str, Sides] = {"mirror": ("free", 0.3, 0.5, "free"), "quarter_turn": ("free", 0.5, 0.3, "free")}
 STEPS = 4
@@ -37,7 +39,8 @@ def tests(subject: Subject) -> list[Tested]:
     """Every transfer and stress update in each test."""
     found: list[Tested] = []
     for variant in every():
-        for name, ask in (("friction_slide", slide), ("friction_stick", stick), ("friction_leave", leave)):
+        for name, ask in (("friction_slide", slide), ("friction_stick", stick), ("friction_leave", leave),
+                          ("friction_damped", damped)):  # fmt: skip
             found += attempt(f"{name} {variant}", Part.FRICTION, partial(ask, subject, variant))
         found += attempt(f"friction_budget {variant}", Part.FRICTION, partial(budget, subject, variant))
         found += attempt(f"friction_mirror {variant}", Part.FRICTION, partial(turned, subject, variant))
@@ -54,16 +57,17 @@ def everywhere(axis: int) -> FrictionalWalls:
 
 
 def carry(
-    subject: Subject, variant: Variant, axis: int, pull: float, press: tuple[float, ...], v: float
-) -> tuple[Floats, float]:
-    """Tangential and normal shifts and velocities (P,4) after some steps, and what F and sigma changed by.
+    subject: Subject, variant: Variant, axis: int, pull: float, press: tuple[float, ...], v: float, away: float = 0.0,
+    damping: Damping | None = None,
+) -> tuple[Floats, float, float]:  # fmt: skip
+    """Tangential and normal shifts and velocities (P,4) after some steps, what F and sigma changed by, energy damped.
 
     `pull` is the tangential and `press` the normal force per mass of each step, times dt over c; `v` is the tangential
-    velocity at first over c.
+    velocity at first over c, and `away` the normal one.
     """
     p = populated(subject, layout(), np.eye(2))
-    p.v[:, 1 - axis] = v * subject.speed
-    model = modelled(subject, p, variant, everywhere(axis))
+    p.v[:, [1 - axis, axis]] = np.array([v, away]) * subject.speed
+    model = modelled(subject, p, variant, everywhere(axis), damping=damping)
     force, x = np.zeros(2), by_id(p, "x")
     force[1 - axis] = pull * subject.speed / model.dt
     for one in press:
@@ -71,14 +75,15 @@ def carry(
         advance(model, lambda particles, t: np.copyto(particles.b, np.broadcast_to(force, particles.b.shape)))
     columns = [1 - axis, axis]
     moves = (by_id(model.particles, "x") - x)[:, columns] / DX
-    return np.hstack([moves, by_id(model.particles, "v")[:, columns] / subject.speed]), still(subject, model)
+    rows = np.hstack([moves, by_id(model.particles, "v")[:, columns] / subject.speed])
+    return rows, still(subject, model), model.damped / (float(p.m.sum()) * subject.speed**2)
 
 
 def slide(subject: Subject, variant: Variant) -> Tested:
     """Body that slides: it goes faster by g_t - mu g_n, or slows down, turns round and sticks where |g_t| < mu g_n."""
     worst = 0.0
     for axis, part, v in SLIDES:
-        rows, other = carry(subject, variant, axis, part * PRESSED, STEPS * (PRESSED,), v)
+        rows, other, _ = carry(subject, variant, axis, part * PRESSED, STEPS * (PRESSED,), v)
         moved, speed = 0.0, v
         for _ in range(STEPS):
             speed += part * PRESSED
@@ -90,29 +95,61 @@ def slide(subject: Subject, variant: Variant) -> Tested:
 
 def stick(subject: Subject, variant: Variant) -> Tested:
     """Body at rest under a tangential force of 0.99 mu g_n: it does not move, to the last bit."""
-    rows, _ = carry(subject, variant, 1, 0.99 * MU * PRESSED, STEPS * (PRESSED,), 0.0)
+    rows, _, _ = carry(subject, variant, 1, 0.99 * MU * PRESSED, STEPS * (PRESSED,), 0.0)
     return Tested(f"friction_stick {variant}", off(rows, 0.0, 1.0), 0.0, Part.FRICTION)
 
 
 def leave(subject: Subject, variant: Variant) -> Tested:
-    """Body that is pressed for two steps and then torn off the wall: nothing holds it, and nothing rubs, any more."""
+    """Body that is pressed for two steps and then torn off the wall, and one that is thrown off a floor.
+
+    Nothing holds them, and nothing rubs, any more; nor does the floor strain the one that leaves it with a velocity.
+    """
     press = np.array([1.0, 1.0, -1.0, -1.0]) * PRESSED
-    rows, other = carry(subject, variant, 1, PRESSED, tuple(press), 0.3)
+    rows, other, _ = carry(subject, variant, 1, PRESSED, tuple(press), 0.3)
     gained = np.stack([PRESSED - MU * np.maximum(press, 0.0), np.maximum(-press, 0.0)], axis=1)
     speeds = np.array([0.3, 0.0]) + np.cumsum(gained, axis=0)
     moved = subject.dt * subject.speed / DX * speeds.sum(axis=0)
-    worst = max(off(rows, np.concatenate([moved, speeds[-1]]), 1.0), other)
+    worst = max(off(rows, np.concatenate([moved, speeds[-1]]), 1.0), other, thrown(subject, variant))
     return Tested(f"friction_leave {variant}", worst, bound(2 * STEPS * subject.support), Part.FRICTION)
+
+
+def thrown(subject: Subject, variant: Variant) -> float:
+    """Distance from the known motion of a body, without stress, that is thrown off a floor on which it lies."""
+    p, v = populated(subject, layout(filled=True), np.eye(2)), subject.speed * np.array([0.05, 0.1])
+    p.v[:] = v
+    model, x = modelled(subject, p, variant, ("free", "free", MU, "free"), FILLED), by_id(p, "x")
+    for _ in range(STEPS):
+        advance(model, lambda particles, t: particles.b.fill(0.0))
+    moved = by_id(model.particles, "x") - x
+    return max(off(moved, STEPS * model.dt * v, DX), off(model.particles.v, v, subject.speed), still(subject, model))
+
+
+def damped(subject: Subject, variant: Variant) -> Tested:
+    """Body whose flight the force slows down and damping would turn into the wall: it stops there, and is rubbed."""
+    worst, force = 0.0, PRESSED * np.array([1.0, -0.9])
+    for kind in ("local", "objective"):
+        damping, v, moved, work = Damping(HALF, kind), PRESSED * np.array([0.25, 1.0]), np.zeros(2), 0.0
+        rows, other, found = carry(subject, variant, 1, force[0], STEPS * (-force[1],), v[0], v[1], damping)
+        for _ in range(STEPS):
+            flies = (v + force)[1] > 0  # else it touches, and is not damped
+            against = taken(damping, force, v) if flies else 0 * force
+            new = v + force - against
+            new = np.array([max(new[0] - MU * max(-new[1], 0.0), 0.0), max(new[1], 0.0)])
+            work += float(against @ (v + new)) / 2
+            v, moved = new, moved + subject.dt * subject.speed / DX * new
+        worst = max(worst, off(rows, np.concatenate([moved, v]), 1.0), other, off(found, work, 1.0))
+    return Tested(f"friction_damped {variant}", worst, bound(2 * STEPS * subject.support), Part.FRICTION)
 
 
 def budget(subject: Subject, variant: Variant) -> list[Tested]:
     """Energies of a body that strikes a floor with friction add up; and the momentum of a step in which all slides.
 
-    Of the tangential momentum friction takes mu times the normal one that the floor gives.
+    Of the tangential momentum friction takes mu times the normal one that the floor gives. All domains shrink: beside
+    one that grows is a node of hardly any mass, which its force may send the other way.
     """
     names = f"friction_budget {variant}", f"friction_momentum {variant}"
     p = populated(subject, layout(filled=True), np.eye(2))
-    p.v[:] = subject.speed * (0.02 * random(len(p), 2) + [0.5, -0.2])
+    p.v[:] = subject.speed * (0.02 * (random(len(p), 2) + 0.5 * FILLED - p.x / DX) + [0.5, -0.2])
     model = modelled(subject, p, variant, ("free", "free", MU, "free"), FILLED)
     g, m = np.array([0.05, -0.1]) * subject.speed**2 / DX, p.m.copy()
     known = Budget(g, kinetic(p))
@@ -168,7 +205,7 @@ class Known(Walls):
     def __init__(self, nodes: Floats) -> None:
         super().__init__(np.zeros(nodes.shape, bool), np.zeros(nodes.shape), np.zeros(nodes.shape), stops=True)
         self.near = nodes < 1e-9 * DX  # left wall, floor
-        self.strains = self.near.copy()
+        self.strains = np.zeros(nodes.shape, bool)  # nothing touches before the first step
 
     def in_strain(self) -> tuple[NDArray[np.bool_], Floats, Floats]:
         """Components that have the wall's velocity."""

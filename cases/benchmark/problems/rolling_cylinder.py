@@ -12,7 +12,7 @@ Registered, a gap: a wall acts up to a cell early, as its nodes have mass as soo
 cylinder starts a cell above the floor. Put down on the line of the floor it would lie like a block, on all nodes under
 the cells that it reaches into, and not turn. With a gap of d cells below it, it rolls on the radius r = R + d dx,
 
-    travel = g sin(theta) t^2 / 2 (1 + R^2 / 2 r^2),   turn = travel / r
+    travel = g sin(theta) t^2 / (2 (1 + R^2 / (2 r^2))),   turn = travel / r
 
 Held in cells are the gap that the travel tells, from 0 to 1, and what is added to the radius by the travel over the
 turn, from 0 to 2. The first is 0.3 to 0.6 on 8 cells of the diameter, 0.6 to 0.8 on 16 and 0.6 to 0.9 on 32: the
