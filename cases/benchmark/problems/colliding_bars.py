@@ -31,7 +31,7 @@ from mpm_verify.cases.benchmark.problem import Drawn, Held, Measured, Problem, S
 from mpm_verify.cases.benchmark.run import Run
 from mpm_verify.solver.boundary import box
 from mpm_verify.solver.layout import Layout, rectangle
-from mpm_verify.solver.plugins import MATERIALS, METHODS, SMOOTHINGS, TRANSFERS, create, split
+from mpm_verify.solver.plugins import MATERIALS, METHODS, SMOOTHINGS, TRANSFERS, create, optional, split
 from mpm_verify.solver.state import Floats, Grid
 from mpm_verify.solver.step import Model, Scheme
 
@@ -106,7 +106,7 @@ class CollidingBars(Problem):
         model = Model(
             grid, particles, basis, material, box(grid, ("free", "free", "roller", "roller")), run.courant * dx / c,
             Scheme(create(TRANSFERS, run.transfer)), None,
-            None if run.smoothing == "none" else create(SMOOTHINGS, run.smoothing),
+            optional(SMOOTHINGS, run.smoothing),
         )  # fmt: skip
         steps = ceil((half / (self.speed * c) + AFTER * L / c) / model.dt)
         return Setup(model, steps, Bars(self, run, c))

@@ -39,7 +39,7 @@ from mpm_verify.cases.judging.records import Expectation
 from mpm_verify.solver.boundary import box
 from mpm_verify.solver.damping import Damping
 from mpm_verify.solver.layout import per_side, rectangle
-from mpm_verify.solver.plugins import MATERIALS, METHODS, SMOOTHINGS, TRANSFERS, create, split
+from mpm_verify.solver.plugins import MATERIALS, METHODS, SMOOTHINGS, TRANSFERS, create, optional, split
 from mpm_verify.solver.state import Floats, Grid, Particles
 from mpm_verify.solver.step import Model, Scheme, particles_to_grid
 
@@ -109,7 +109,7 @@ class SelfWeight(Problem):
         model = Model(
             grid, particles, basis, material, box(grid, ("roller", "roller", "roller", "free")), dt,
             Scheme(create(TRANSFERS, run.transfer)), Damping(self.damping),
-            None if run.smoothing == "none" else create(SMOOTHINGS, run.smoothing),
+            optional(SMOOTHINGS, run.smoothing),
         )  # fmt: skip
         g, ramp = self.g * (HEAVY if run.control else 1.0), RAMP * period
 
