@@ -96,6 +96,22 @@ def test_the_position_of_a_column_is_of_second_order() -> None:
     assert 1.6 < log2(coarse / fine) < 2
 
 
+def test_a_column_rests_where_it_does_with_half_the_time_step(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where it comes to rest is told by its way: raised fast it swings, and its error depends on the time step."""
+
+    def change(method: str) -> float:
+        usual, half = (
+            execute(Run(**canonical({"problem": "self_weight", "method": method, "cells": 12, "courant": courant})))[0]
+            for courant in (0.4, 0.2)
+        )
+        return abs(half.errors["u"]["rms"] / usual.errors["u"]["rms"] - 1)
+
+    assert change("cpdi") < 0.02
+    assert change("tlmpm") < 1e-5  # on nodes that never change, there is one state at rest
+    monkeypatch.setattr("mpm_verify.cases.benchmark.problems.self_weight.RAMP", 2.0)
+    assert change("cpdi") > 0.05
+
+
 def test_domains_of_fixed_size_do_not_bear_a_column() -> None:
     found = ran("self_weight", method="gimp", cells=8)
     assert found.errors["sigma"]["cells"] > 100
