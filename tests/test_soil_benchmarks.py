@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from math import pi, sqrt
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from mpm_verify.cases.harness.contract import case_named
 from mpm_verify.cases.harness.refinement import collect
 from mpm_verify.cases.judging.richardson import extrapolate
 from mpm_verify.solver.material.mohr_coulomb import MohrCoulomb
+from mpm_verify.verify.detecting import checks
 
 FACTOR = 2 + pi
 COHESIVE = "mohr_coulomb:phi=30,psi=0,c=1e4"
@@ -200,3 +202,11 @@ def test_a_study_passes_and_its_control_fails(tmp_path: object) -> None:
     assert done.exit_code == 0
     spoilt = mv.study("benchmark", quick=True, problem=["rankine"], control=True, out=f"{tmp_path}/spoilt")
     assert spoilt.exit_code == 1
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("method", ["mpm", "cpdi", "cpdi2", "bspline2", "gimp"])
+def test_a_campaign_finds_sound_strips_sound(method: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Else nothing that is planted would be noticed: a FAIL against a FAIL tells nothing."""
+    monkeypatch.setattr(checks, "COARSE", {"footing": checks.COARSE["footing"]})
+    assert checks.benchmark(checks.Subject(method, tmp_path, tmp_path, True)) == ("PASS", "")
