@@ -87,8 +87,27 @@ def test_a_cylinder() -> None:
     assert wrong == []
     assert values["gap"] == pytest.approx(0.563, abs=0.02)
     assert values["turn"] == pytest.approx(0.871, abs=0.01)
+    assert values["slip"] == pytest.approx(0.489, abs=0.01)  # of 0.58 at most
     _, wrong = missed(made("rolling_cylinder", 8, control=True))
     assert set(wrong) == {"gap", "slip"}
+
+
+def test_what_is_held_of_a_cylinder_is_what_was_measured_of_it() -> None:
+    """Both bounds of the gap and of the slip; of another cylinder, a coarse grid or more particles no measured one."""
+    found = []
+    for run in (
+        made("rolling_cylinder", 8),
+        made("rolling_cylinder", 16, "bspline2"),
+        made("rolling_cylinder:theta=20", 8),
+        made("rolling_cylinder", 4),
+        made("rolling_cylinder", 8, ppc=9),
+    ):
+        found.append([(one.name, one.expected) for one in run.stated.held(run)][:4])
+    usual, splines, *others = ([value for _, value in one] for one in found)
+    assert usual == [0.45, 1.0, 0.0, 0.58]
+    assert splines == [0.2, 1.0, 0.0, 0.58]
+    assert others == [[0.0, 1.0, 0.0, 1.0]] * 3
+    assert [name for name, _ in found[0]] == ["gap", "gap", "slip", "slip"]
 
 
 def test_what_is_no_incline() -> None:

@@ -1,4 +1,4 @@
-"""Balance of a body in layers of cells: mean stress of each by the weights of the method, and force of the floor."""
+"""Balance of a body in layers of cells: the mean stress of each by the weights of the method."""
 
 import numpy as np
 
@@ -37,10 +37,3 @@ def cell_stress(model: Model, error: Floats) -> tuple[Floats, Floats]:
     there = filled > LEAST * filled.max()
     heights = grid.origin[1] + grid.dx * (np.arange(len(filled)) + 0.5)
     return heights[there], force[there] / filled[there]
-
-
-def base_force(model: Model) -> float:
-    """Force of the floor on the column: minus what the stress and the weight of particles give to its nodes."""
-    held = model.walls.held[:, 1] & (model.grid.nodes[:, 1] < model.grid.lower[1] + 0.5 * model.grid.dx)
-    particles_to_grid(model)
-    return -float(model.grid.force[held, 1].sum())

@@ -5,28 +5,27 @@ from typing import Any, Final
 
 import numpy as np
 
+from mpm_verify.cases.benchmark.edges import EdgeRecord, PushedRecord, edges, pushed_nodes
 from mpm_verify.cases.benchmark.run import Run
 from mpm_verify.mms.export.case import Columns, constants, named, numbers, positions
 from mpm_verify.mms.export.record import MaterialRecord
-from mpm_verify.solver.model import Model
 from mpm_verify.solver.plugins import label, parameters_of
-from mpm_verify.solver.sides import SIDES
 
 FORMAT: Final = "mpm-verify-benchmark-1"
 EXPORTED = "cpdi"  # method whose domains are told: half side vectors at reference
-KINDS = {(False, False): "free", (True, False): "roller", (True, True): "fixed"}  # normal and tangential held
-MIXED = "mixed"
 LATE = 1e300  # a time at which the body force has its final value
 
 
 @dataclass(frozen=True)
 class KnownRecord:
-    """Number of a run and what it is held against, see cases/harness/checks.py: Check."""
+    """Number of a run and what it is held against, see cases/benchmark/problem.py: Held."""
 
+    name: str
     expected: float
     way: str
     within: float
     of: str
+    least: int
     source: str
 
 
@@ -43,17 +42,19 @@ class BenchmarkRecord:
     cells, dx, ppc, particles
         Cells along the body and their side, particles in a cell and all of them.
     edges
-        Kind of each side of the grid: free, roller, fixed, or mixed where nodes of one side differ.
+        What each side of the grid holds, and what pulls at it.
+    pushed
+        Nodes whose velocity along an axis is given.
     gravity
         Body force per mass at the end, (x, y).
     damping
         Fraction of the unbalanced force that local damping takes.
-    dt, steps
-        Time step of the reference solver, and its most steps.
+    dt, steps, duration
+        Time step of the reference solver, its most steps, and the time that they take.
     parameters, material
         Of the problem and of the constitutive model.
     known
-        Numbers by name.
+        Numbers, and what each is held against; of one number there may be two bounds.
     """
 
     format: str
@@ -65,14 +66,16 @@ class BenchmarkRecord:
     dx: float
     ppc: int
     particles: int
-    edges: dict[str, str]
+    edges: dict[str, EdgeRecord]
+    pushed: tuple[PushedRecord, ...]
     gravity: tuple[float, ...]
     damping: float
     dt: float
     steps: int
+    duration: float
     parameters: dict[str, float]
     material: MaterialRecord
-    known: dict[str, KnownRecord]
+    known: tuple[KnownRecord, ...]
 
 
 @dataclass(frozen=True)
@@ -114,14 +117,15 @@ def export(run: Run) -> Exported:
     particles |= named("s", columns["sigma"]) | {"V0": columns["V0"], "m": columns["m"]}
     for side in range(2):
         particles |= named(f"r{side + 1}", columns["domain"][:, 2 * side : 2 * side + 2])
-    known = {
-        held.name: KnownRecord(held.expected, held.way, held.within, held.of, held.source) for held in problem.held(run)
-    }
+    known = tuple(
+        KnownRecord(held.name, held.expected, held.way, held.within, held.of, held.least, held.source)
+        for held in problem.held(run)
+    )
     values = {key: getattr(problem, item.name) for key, item in parameters_of(problem).items()}
     record = BenchmarkRecord(
         FORMAT, label(run.problem), problem.source, numbers(grid.lower), numbers(grid.upper), run.cells, grid.dx,
-        run.ppc, len(p), edges(model), numbers(np.median(columns["b"], axis=0)),
-        model.damping.alpha if model.damping else 0.0, model.dt, setup.steps, values,
+        run.ppc, len(p), edges(model), pushed_nodes(model), numbers(np.median(columns["b"], axis=0)),
+        model.damping.alpha if model.damping else 0.0, model.dt, setup.steps, setup.steps * model.dt, values,
         MaterialRecord(label(run.material), constants(model.material), getattr(model.material, "formula", "")), known,
     )  # fmt: skip
     return Exported(record, particles, problem.answers(run, columns["X"]))
@@ -135,18 +139,3 @@ def exported(problem: str, material: str | None, cells: int, ppc: int | None, co
     values = canonical(given)
     made = Run(**values, cells=cells, courant=courant)
     return export(Run(**values, cells=cells, courant=courant, ppc=ppc or made.stated.ppc))
-
-
-def edges(model: Model) -> dict[str, str]:
-    """Kind of each side of the grid, by what its nodes are held to, those of the corners left out where others are."""
-    grid, held, found = model.grid, model.walls.held, {}
-    slack = 1e-9 * grid.dx
-    for number, side in enumerate(SIDES):
-        axis, end = number // 2, (grid.lower, grid.upper)[number % 2]
-        on = np.abs(grid.nodes[:, axis] - end[axis]) < slack
-        across = grid.nodes[:, 1 - axis]
-        middle = on & (across > grid.lower[1 - axis] + slack) & (across < grid.upper[1 - axis] - slack)
-        corners = not middle.any()  # a body of one cell's width: what holds them along the side is the next one
-        rows = {(bool(row[axis]), bool(row[1 - axis]) and not corners) for row in held[on if corners else middle]}
-        found[side] = KINDS.get(rows.pop(), MIXED) if len(rows) == 1 else MIXED
-    return found

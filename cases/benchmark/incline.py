@@ -10,7 +10,7 @@ from mpm_verify.cases.benchmark.run import Run
 from mpm_verify.solver.friction import frictional
 from mpm_verify.solver.layout import Layout
 from mpm_verify.solver.model import Model
-from mpm_verify.solver.plugins import MATERIALS, METHODS, SMOOTHINGS, TRANSFERS, create, split
+from mpm_verify.solver.plugins import MATERIALS, METHODS, SMOOTHINGS, TRANSFERS, create, optional, split
 from mpm_verify.solver.state import Floats, Grid
 from mpm_verify.solver.step import Scheme
 
@@ -56,7 +56,7 @@ class Incline:
         model = Model(
             grid, particles, basis, material, frictional(grid, ("free", "free", friction, "free")), duration / steps,
             Scheme(create(TRANSFERS, run.transfer), STRESS.get(split(run.method)[0], "usl")), None,
-            None if run.smoothing == "none" else create(SMOOTHINGS, run.smoothing),
+            optional(SMOOTHINGS, run.smoothing),
         )  # fmt: skip
         return Setup(model, steps, Motion(self, model), leave)
 

@@ -1,7 +1,9 @@
 """Slow push of nodes into soil, out and back if need be, and the force that it takes."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from math import cos, pi
+from typing import ClassVar
 
 import numpy as np
 
@@ -18,9 +20,18 @@ ROUND_OFF = 1e-11  # of the largest force, of what is missing in a step: a node 
 STIFF = 1e4  # least stiffness over strength: strains stay far below what would change the geometry
 
 
-def smooth(distance: float, duration: float) -> Callable[[float], float]:
+@dataclass(frozen=True)
+class Smooth:
     """Travel from rest to rest, 1 - cos: to the distance within the duration, and then back as slowly."""
-    return lambda t: 0.5 * distance * (1.0 - cos(pi * max(t, 0.0) / duration))
+
+    formula: ClassVar[str] = "distance/2*(1-cos(pi*t/duration))"
+
+    distance: float
+    duration: float
+
+    def __call__(self, t: float) -> float:
+        """Distance that is gone at the time t."""
+        return 0.5 * self.distance * (1.0 - cos(pi * max(t, 0.0) / self.duration))
 
 
 def slow(model: Model, walls: PushedWalls, outer: Floats) -> tuple[Reaction, Balance]:

@@ -86,6 +86,9 @@ class Held:
     of
         ``limit``: the Richardson limit of the finest three levels, or the finest value where there are fewer or they
         do not approach one; ``finest``: the value on the finest cells; ``each``: that of every run.
+    least
+        Cells from which on the values come to their limit by one order: coarser grids are left out of it, and with
+        fewer than three of the others nothing is held. 0 where coarse grids are as near as fine ones.
     """
 
     name: str
@@ -94,6 +97,7 @@ class Held:
     source: str
     within: float = 0.0
     of: Literal["limit", "finest", "each"] = "limit"
+    least: int = 0
 
 
 @dataclass(frozen=True)

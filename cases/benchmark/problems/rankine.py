@@ -19,13 +19,13 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from mpm_verify.cases.benchmark.pressed import STIFF, Pressed, balance, slow, smooth, thinned
+from mpm_verify.cases.benchmark.pressed import STIFF, Pressed, Smooth, balance, slow, thinned
 from mpm_verify.cases.benchmark.problem import Drawn, Held, Measured, Problem, Setup
 from mpm_verify.cases.benchmark.run import Run
 from mpm_verify.solver.boundary import box
 from mpm_verify.solver.damping import Damping
 from mpm_verify.solver.layout import Layout, rectangle
-from mpm_verify.solver.plugins import MATERIALS, METHODS, SMOOTHINGS, TRANSFERS, create
+from mpm_verify.solver.plugins import MATERIALS, METHODS, SMOOTHINGS, TRANSFERS, create, optional
 from mpm_verify.solver.pushed import pushed
 from mpm_verify.solver.state import Floats, Grid
 from mpm_verify.solver.step import Model, Scheme
@@ -123,13 +123,13 @@ class Rankine(Problem):
         model = Model(
             grid, particles, basis, soil, walls, duration / steps, Scheme(create(TRANSFERS, run.transfer)),
             Damping(self.damping) if self.damping else None,
-            None if run.smoothing == "none" else create(SMOOTHINGS, run.smoothing),
+            optional(SMOOTHINGS, run.smoothing),
             surcharge(layout, upper, self.q) if self.q else None,
         )  # fmt: skip
         at = self.base(known)
         strain = (self.pressure(known, 1, at) - self.pressure(known, -1, at)) * (1 - soil.nu**2) / self.E
         far = grid.nodes[:, 0] > self.H - 0.5 * dx
-        push = pushed(walls, far, 0, smooth(-BEYOND * strain * self.H, duration))
+        push = pushed(walls, far, 0, Smooth(-BEYOND * strain * self.H, duration))
         outer = np.array([0.0, -(self.q + soil.rho0 * self.g * self.H) * self.H])
         reaction, whole = slow(model, push, outer)
 

@@ -1,8 +1,11 @@
 """Self-weight column: a soft column settles under gravity to half its height, with a known stress.
 
-A column of height H stands on a roller between rollers, and gravity is raised to g over two of its slowest periods and
-then held until local damping has brought it to rest. Its stress is known for any constitutive model: the area does not
-change, so that the Cauchy stress is the nominal one,
+A column of height H stands on a roller between rollers, and gravity is raised to g over eight of its slowest periods
+and then held until local damping has brought it to rest. Forces of a grid are fewer than its particles, so that they
+balance in many states, and the column comes to rest in one that its way leads to: raised over two periods it swings
+beyond its rest and back, its error is twice as large, and grows by 10 to 15 % with half the time step. Raised slowly it
+comes from one side, and half the step changes the error by 0.3 %. Its stress is known for any constitutive model: the
+area does not change, so that the Cauchy stress is the nominal one,
 
     sigma_yy = -rho0 g (H - Y),   Y the height of a particle at reference.
 
@@ -31,7 +34,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from mpm_verify.cases.benchmark.balance import base_force, cell_stress, rms
+from mpm_verify.cases.benchmark.balance import cell_stress, rms
 from mpm_verify.cases.benchmark.problem import Drawn, Held, Measured, Pair, Problem, Setup, Watch
 from mpm_verify.cases.benchmark.run import Run
 from mpm_verify.cases.benchmark.uniaxial import stiffness, stretch, stretches
@@ -39,7 +42,8 @@ from mpm_verify.cases.judging.records import Expectation
 from mpm_verify.solver.boundary import box
 from mpm_verify.solver.damping import Damping
 from mpm_verify.solver.layout import per_side, rectangle
-from mpm_verify.solver.plugins import MATERIALS, METHODS, SMOOTHINGS, TRANSFERS, create, split
+from mpm_verify.solver.plugins import MATERIALS, METHODS, SMOOTHINGS, TRANSFERS, create, optional, split
+from mpm_verify.solver.reaction import Reaction
 from mpm_verify.solver.state import Floats, Grid, Particles
 from mpm_verify.solver.step import Model, Scheme, particles_to_grid
 
@@ -49,7 +53,7 @@ DEVIATIONS = {  # of the position; see above
     "bspline2": Expectation(None, stall=1.0, stall_h=1 / 32, source="measured"),
     "mpm": Expectation(None, source="measured"),
 }
-RAMP, MOST = 2.0, 40.0  # slowest periods in which gravity rises, and after which a run ends though it is not at rest
+RAMP, MOST = 8.0, 80.0  # slowest periods in which gravity rises, and after which a run ends though it is not at rest
 REST = 1e-11  # largest force of a node at rest, over the whole weight
 SAMPLES = 33  # heights at which the fastest wave is looked for
 HEAVY = 1.02  # gravity of the failing control, over that of the problem
@@ -67,7 +71,7 @@ class SelfWeight(Problem):
     source: ClassVar[str] = "Coombs & Augarde 2020, doi:10.1016/j.advengsoft.2019.102748"
     material: ClassVar[str] = "hencky"
     cells: ClassVar[tuple[int, ...]] = (12, 16, 24, 32, 48, 64, 96)
-    quick: ClassVar[tuple[int, ...]] = (8, 12, 16, 24)
+    quick: ClassVar[tuple[int, ...]] = (16, 24, 36, 54)
     methods: ClassVar[tuple[str, ...]] = ("cpdi", "tlmpm")
     figures: ClassVar[dict[str, Drawn]] = {
         "stress": Drawn("vertical stress [kPa]", "height at rest [m]", "stress of each particle, and the exact one"),
@@ -109,14 +113,16 @@ class SelfWeight(Problem):
         model = Model(
             grid, particles, basis, material, box(grid, ("roller", "roller", "roller", "free")), dt,
             Scheme(create(TRANSFERS, run.transfer)), Damping(self.damping),
-            None if run.smoothing == "none" else create(SMOOTHINGS, run.smoothing),
+            optional(SMOOTHINGS, run.smoothing),
         )  # fmt: skip
         g, ramp = self.g * (HEAVY if run.control else 1.0), RAMP * period
 
         def weight(particles: Particles, t: float) -> None:
             particles.b[:, 1] = -g * min(1.0, t / ramp)
 
-        return Setup(model, ceil(MOST * period / dt), AtRest(self, ramp, per_side(run.ppc)), weight)
+        floor = Reaction(grid.nodes[:, 1] < 0.5 * dx)
+        model.watch(floor)
+        return Setup(model, ceil(MOST * period / dt), AtRest(self, ramp, per_side(run.ppc), floor), weight)
 
     def measures(self, run: Run) -> tuple[Pair, ...]:
         """Position, stress of cells and of particles."""
@@ -160,8 +166,8 @@ class SelfWeight(Problem):
 class AtRest(Watch):
     """Watch that ends the run when no node is accelerated any more, and measures it."""
 
-    def __init__(self, problem: SelfWeight, ramp: float, side: int) -> None:
-        self.problem, self.ramp, self.side, self.unbalanced = problem, ramp, side, 0.0
+    def __init__(self, problem: SelfWeight, ramp: float, side: int, floor: Reaction) -> None:
+        self.problem, self.ramp, self.side, self.floor, self.unbalanced = problem, ramp, side, floor, 0.0
 
     def after_motion(self, model: Model) -> None:
         """Look at the largest force of a node that is free."""
@@ -188,7 +194,7 @@ class AtRest(Watch):
         values = {
             "height": float(p.x[where == len(rows) - 1, 1].mean() + F[-1] * (problem.H - rows[-1])),
             "base_stretch": float(1.5 * low - 0.5 * next_),
-            "base_force": base_force(model) / (weight * model.grid.dx),
+            "base_force": float(self.floor.force[1]) / (weight * model.grid.dx),
             "cell_stress": float(np.abs(cells).max()),
             "unbalanced": self.unbalanced,
         }
