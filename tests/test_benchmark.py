@@ -23,6 +23,7 @@ from mpm_verify.cases.benchmark.uniaxial import nominal, stretch
 from mpm_verify.cases.harness.build import Asked, build
 from mpm_verify.cases.harness.contract import case_named
 from mpm_verify.cases.harness.store import Store
+from mpm_verify.reports.export.case_folder import read
 from mpm_verify.reports.export.document import schema
 from mpm_verify.solver._jit import use_threads
 from mpm_verify.solver.plugins import MATERIALS, METHODS, PROBLEMS, available, create
@@ -271,6 +272,8 @@ def test_every_problem_is_exported(
     assert {edge["kind"] for edge in case["edges"].values()} <= {"free", "roller", "fixed", "frictional", "pushed"}
     flat = dict(line.split(" ", 1) for line in (tmp_path / "case.txt").read_text().splitlines())
     assert float(flat["dx"]) == case["dx"]
+    with pytest.raises(ValueError, match="holds a benchmark, which has no body-force sources to check"):
+        read(tmp_path)
 
 
 def test_an_exported_column_says_where_it_rests() -> None:

@@ -12,6 +12,7 @@ import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from pydantic import TypeAdapter, ValidationError
 
+from mpm_verify.cases.benchmark.exported import FORMAT as BENCHMARK
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.mms.components import AXES
 from mpm_verify.mms.export.case import Exported
@@ -106,6 +107,8 @@ def read(folder: Path) -> CaseRecord:
         text = (folder / CASE).read_bytes()
     except OSError as error:
         raise ValueError(f"{folder} holds no exported case: {CASE}: {error.strerror}") from None
+    if BENCHMARK.encode() in text:
+        raise ValueError(f"{folder} holds a benchmark, which has no body-force sources to check")
     try:
         return TypeAdapter(CaseRecord).validate_json(text)
     except ValidationError as error:
