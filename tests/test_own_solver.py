@@ -260,6 +260,12 @@ def test_a_command_that_cannot_be_run(verify: Call, name: str) -> None:
     assert says in one_line(verify("mms", "--quick", "--solver", typed))
 
 
+def test_a_program_that_may_not_be_executed(verify: Call, tmp_path: Path) -> None:
+    (tmp_path / "own.py").write_text("x = 1\n")
+    line = one_line(verify("mms", "--quick", "--solver", f"{tmp_path}/own.py {{case}} {{out}}"))
+    assert f"type chmod +x {tmp_path}/own.py, or name what runs it, such as 'python {tmp_path}/own.py" in line
+
+
 @pytest.mark.parametrize("option", ["--transfer=apic", "--stress=usf", "--layout=graded", "--no-staggered"])
 def test_what_is_for_the_reference_solver(verify: Call, option: str) -> None:
     typed = f"{sys.executable} {{case}} {{out}}"

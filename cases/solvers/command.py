@@ -21,6 +21,11 @@ def parts(command: str) -> list[str]:
     missing = [folder for folder in FOLDERS if not any(folder in word for word in words)]
     if missing:
         raise ValueError(f"--solver {command!r} has no {' and no '.join(missing)}; write './mycode {{case}} {{out}}'")
+    if shutil.which(words[0]) is None and Path(words[0]).is_file():
+        raise ValueError(
+            f"--solver {command!r}: {words[0]} may not be executed; type chmod +x {words[0]}, "
+            f"or name what runs it, such as 'python {command}'"
+        )
     if shutil.which(words[0]) is None:
         raise ValueError(f"--solver {command!r}: there is no program {words[0]!r}; give its path, such as ./mycode")
     return words
