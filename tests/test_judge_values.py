@@ -101,6 +101,20 @@ def test_the_worked_table_by_the_command(verify: Call) -> None:
     assert all(text in page for text in ("6.1685", "10.8801", "6.02687", "2.17 %", "the values go to and fro"))
 
 
+@pytest.mark.parametrize(("errors", "orders"), [
+    ((0, 16, 4, 1, 0.25), [2.0, 2.0, 2.0]), ((64, 16, 4, 1, 0), [2.0, 2.0, 2.0]), ((64, 16, 0, 1, 0.25), [2.0, 2.0]),
+])  # fmt: skip
+def test_an_order_stands_beside_the_finer_of_its_two_cells(
+    verify: Call, errors: tuple[float, ...], orders: list[float]
+) -> None:
+    Path("table.csv").write_text("\n".join(["h,error", *(f"{2.0**-k},{e}" for k, e in enumerate(errors))]))
+    rows = [line.split() for line in verify("judge", "table.csv", "--order", "2")[1].splitlines()]
+    found = [row for row in rows if len(row) > 2 and row[-2].endswith(("e+00", "e+01", "e-01"))]
+    assert [float(row[-1]) for row in found] == orders
+    beside = [k for k in range(1, 5) if errors[k - 1] and errors[k]]
+    assert [float(row[-3]) for row in found] == [2.0**-k for k in beside]
+
+
 @pytest.mark.parametrize("order", [0.5, 1.0, 2.0, 3.7])
 @pytest.mark.parametrize("h", [(1.0, 2.0, 4.0), (0.3, 0.7, 0.8), (1 / 42, 1 / 28, 1 / 14)])
 def test_both_agree_on_a_power_law(h: tuple[float, ...], order: float) -> None:

@@ -13,6 +13,7 @@ from rich.text import Text
 from mpm_verify.cases.harness.axes import middle
 from mpm_verify.cases.harness.study import QuantityPlan
 from mpm_verify.cases.harness.verdicts import Finding
+from mpm_verify.cases.judging.fit import local
 from mpm_verify.cases.judging.stall import Stall
 from mpm_verify.reports import words
 from mpm_verify.reports.components.audited import edges, unseen
@@ -136,9 +137,10 @@ def columns(record: Record, plan: QuantityPlan[Any]) -> dict[str, str]:
 
 def rows(record: Record, finding: Finding) -> Iterator[tuple[str, ...]]:
     """Rows, one for each level; names once a block."""
-    plan, orders = finding.plan, iter(finding.verdict.local_orders)
+    plan = finding.plan
+    last: tuple[float, float] | None = None
     first: tuple[str, ...] = (*columns(record, plan).values(), words.measured(plan, " "))
-    earlier, above = False, ""
+    above = ""
     for level, passed in zip_longest(finding.levels, finding.crossings):
         cells, faces = record.named(level.h), "" if passed is None else f"{passed:.1f}"
         if level.ended:
@@ -146,15 +148,15 @@ def rows(record: Record, finding: Finding) -> Iterator[tuple[str, ...]]:
             yield (*first, cells, "-", "", faces, SAME if why == above else why)
             above = why
         else:
-            local = order(next(orders, None)) if earlier else ""
-            yield (*first, cells, f"{middle(level.errors):.3e}", local, faces, "")
-            earlier = True
+            here = (level.h, middle(level.errors))
+            yield (*first, cells, f"{here[1]:.3e}", order(local([last, here])[0] if last else None), faces, "")
+            last = here
         first = ("",) * len(first)
 
 
-def order(local: float | None) -> str:
+def order(slope: float | None) -> str:
     """Local order in words; empty where an error is zero."""
-    return "" if local is None else f"{local:.2f}"
+    return "" if slope is None else f"{slope:.2f}"
 
 
 def verdict(out: Console, record: Record, finding: Finding) -> None:
