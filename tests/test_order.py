@@ -264,7 +264,10 @@ def test_a_table_of_zeros_or_of_no_numbers_is_told_what_to_do() -> None:
         "no level finished, as none of the 4 errors is a number: look for the first step with a NaN"
     )
     some = judge(levels_of([*CLEAN[:4], 0.0]), SECOND, floor=0.0, dt_halved=0.0)
-    assert said(some).endswith("run with --cells 4,8,16,32,64")
+    assert said(some) == "an error of 0 has no order: run with --cells 4,8,16,32,64"
+    exact = judge(levels_of([1e-17, 2e-17, 1e-17, 3e-17, 2e-17]), SECOND, floor=3e-17, dt_halved=1e-17)
+    assert (exact.outcome, exact.reason.wanted) == (INCONCLUSIVE, None)
+    assert said(exact).startswith("every error is at round-off, at most 3.0e-17 with a floor of 3.0e-17, so there")
 
 
 @pytest.mark.parametrize(

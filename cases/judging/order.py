@@ -219,8 +219,8 @@ def _gate(q: Quantity) -> Reason | None:
         return Reason(ReasonCode.TOO_FEW_LEVELS, {"levels": LEVELS}, wanted=q.enough)
     if ended:
         return Reason(ReasonCode.LEVEL_MISSING, failed=(ended,), wanted=q.wanted(Action.FINISH, ended.h))
-    if not fit.error.any():
-        return Reason(ReasonCode.NEAR_ROUND_OFF, {"error": 0.0, "floor": q.floor, "zeros": float(len(fit.h))})
+    if (largest := float(q.fit.error.max())) <= q.floor or not fit.error.any():
+        return Reason(ReasonCode.NEAR_ROUND_OFF, {"error": largest, "floor": q.floor, "zeros": float(len(fit.h))})
     if fit.lowest <= CLEAR * q.floor:
         coarser = q.wanted(Action.REPLACE_FINEST, 2 * float(q.fit.h[0]))
         return Reason(ReasonCode.NEAR_ROUND_OFF, {"error": fit.lowest, "floor": q.floor}, wanted=coarser)

@@ -138,11 +138,19 @@ def _level_missing(r: Reason) -> str:
 
 
 def _near_round_off(r: Reason) -> str:
+    if "zeros" in r.numbers and r.numbers["error"]:
+        largest, floor = (words.short(_number(r, name)) for name in ("error", "floor"))
+        return (
+            f"every error is at round-off, at most {largest} with a floor of {floor}, so there is nothing to judge: "
+            "take a problem that the method does not solve exactly"
+        )
     if "zeros" in r.numbers:
         return (
             "every error is 0, so there is no order: write more digits, compare with the exact solution and not with "
             "the answer itself, or take a problem that the method does not solve exactly"
         )
+    if not r.numbers["error"]:
+        return "an error of 0 has no order"
     error, floor = (words.short(_number(r, name)) for name in ("error", "floor"))
     return f"an error of {error} is not clear of the round-off floor {floor}"
 
