@@ -212,7 +212,9 @@ def test_a_failure_of_all_levels_is_said_once(tmp_path: Path) -> None:
     console = Console(record=True, width=200, file=io.StringIO())
     table.show(done.record, None, console)
     said = " ".join(console.export_text().split())
-    assert said.count("the wall is missing") == 2  # once in the table, once in the verdict
+    assert said.count("exit code 1: ValueError: the wall is missing") == 2  # once in the table, once in the verdict
+    assert "Not seen here" not in said
+    assert "can refute" not in said  # where nothing finished
     assert "no level finished (all 3: the solver ended with exit code 1: ValueError: the wall is missing)" in said
 
 

@@ -32,7 +32,7 @@ def expected(e: Expectation) -> str:
 def beside(found: Sequence[Finding]) -> str:
     """Sentence on what can refute, such as `v and F in rms can refute, and do not: 2 of 2 as registered.`."""
     can = [f for f in found if f.plan.refutes]
-    if not can or any(f.counts for f in can):
+    if any(f.counts for f in can) or all(level.ended for f in can for level in f.levels):
         return ""
     names = list(dict.fromkeys(f.plan.quantity for f in can))
     listed = " and ".join([*([", ".join(names[:-1])] if names[1:] else []), names[-1]])

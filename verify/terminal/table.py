@@ -64,7 +64,8 @@ def show(record: Record, page: Path | None, console: Console | None = None) -> N
         out.print(f"\n{controls.sentence(spoilt)}", style=STYLES["INCONCLUSIVE"] if loose else "dim")
     if moving := edges(record, record.solutions):
         out.print(f"\nEdges: {moving}", style="dim", markup=False)
-    if blind := unseen(record):
+    finished = any(result.status == "finished" for result in record.results.values())
+    if finished and (blind := unseen(record)):
         out.print(f"\nNot seen here: {blind}", style="dim", markup=False)
     for finding in found:
         if finding.stall:
