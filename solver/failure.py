@@ -20,9 +20,11 @@ class FailureKind(StrEnum):
     TIME_LIMIT = "time_limit"  # a solver of somebody else took longer than it may [seconds]
     SOLVER_ERROR = "solver_error"  # a solver of somebody else ended with an error [code]
     NO_ANSWER = "no_answer"  # a file that somebody else's solver was to write is not there <file>
-    UNREADABLE = "unreadable"  # such a file cannot be read <file>
+    UNREADABLE = "unreadable"  # such a file cannot be read [line, farthest] <file; why: a code; word, column>
     NO_COLUMN = "no_column"  # such a file lacks what every answer has <file, column>
-    OTHER_PARTICLES = "other_particles"  # such a file has other particles than were given [found, expected] <file>
+    OTHER_PARTICLES = (
+        "other_particles"  # such a file has other particles than were given [found, expected; twice, other: ids] <file>
+    )
     NOT_RUN = "not_run"  # nobody has run it yet
     OSCILLATES = "oscillates"  # no error can be estimated of a value that goes to and fro as cells get finer
     NO_ERROR = "no_error"  # it came to its end, and no error was measured

@@ -196,7 +196,16 @@ def test_levels_that_are_none(tmp_path: Path, text: str) -> None:
     with pytest.raises(RunFailed) as caught:
         levels(tmp_path)
     assert caught.value.failure.kind is FailureKind.UNREADABLE
-    assert failures.failure(caught.value.failure) == "result.json cannot be read"
+    said = failures.failure(caught.value.failure)
+    known = (
+        "it is empty",
+        "it is no JSON, line 1",
+        "it is not of the form",
+        "v_lag is not a number from -2 to 2",
+        "F_lag is",
+    )
+    assert said.removeprefix("result.json cannot be read: ").startswith(known)
+    assert "\n" not in said
 
 
 def test_levels_that_are_a_folder(tmp_path: Path) -> None:

@@ -191,15 +191,19 @@ def with_value(value: float, column: int = 3) -> Callable[[Path], None]:
 
 
 BAD: dict[str, tuple[Callable[[Path], None], FailureKind, str]] = {
-    "empty": (broken(""), FailureKind.UNREADABLE, "cannot be read"),
+    "empty": (broken(""), FailureKind.UNREADABLE, "result_3.csv cannot be read: it is empty"),
     "a header alone": (broken(HEAD + "\n"), FailureKind.OTHER_PARTICLES, "0 of the 64 particles"),
-    "no numbers": (broken("id,x,y\n" + "a,b,c\n" * 64), FailureKind.UNREADABLE, "cannot be read"),
+    "no numbers": (broken("id,x,y\n" + "a,b,c\n" * 64), FailureKind.UNREADABLE, "'a' in column id is not a number"),
     "binary": (lambda path: path.write_bytes(b"\x00\xff\xfe" * 99) and None, FailureKind.UNREADABLE, "cannot be read"),
     "ragged": (broken("id,x,y\n0,1,2\n1,2,3,4,5\n"), FailureKind.UNREADABLE, "cannot be read"),
     "half of the particles": (cut(slice(0, 32)), FailureKind.OTHER_PARTICLES, "32 of the 64"),
     "one particle lost": (cut(slice(1, None)), FailureKind.OTHER_PARTICLES, "63 of the 64"),
-    "ids twice": (with_value(0.0, 0), FailureKind.OTHER_PARTICLES, "63 of the 64"),
-    "an id that is none": (with_value(999.0, 0), FailureKind.OTHER_PARTICLES, "63 of the 64"),
+    "ids twice": (
+        with_value(0.0, 0),
+        FailureKind.OTHER_PARTICLES,
+        "63 of the 64 particles that were given: id 0 is there twice",
+    ),
+    "an id that is none": (with_value(999.0, 0), FailureKind.OTHER_PARTICLES, "id 999 is none of 0 to 63"),
     "not a number": (with_value(np.nan), FailureKind.NOT_FINITE, "not finite"),
     "infinite": (with_value(np.inf), FailureKind.NOT_FINITE, "not finite"),
     "no x": (broken("id,y\n" + "".join(f"{k},0\n" for k in range(64))), FailureKind.NO_COLUMN, "no column x"),

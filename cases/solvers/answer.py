@@ -18,7 +18,7 @@ from mpm_verify.cases.solvers.components import QUANTITIES
 from mpm_verify.cases.solvers.digits import last_digits, rounding
 from mpm_verify.cases.solvers.matching import matched
 from mpm_verify.cases.solvers.precision import single
-from mpm_verify.cases.solvers.readers import ENDINGS, table
+from mpm_verify.cases.solvers.readers import ENDINGS, table, word
 from mpm_verify.solver.failure import FailureKind, RunFailed
 from mpm_verify.solver.state import Floats
 
@@ -97,7 +97,7 @@ def framed(
         numbers = {name: np.asarray(values, dtype=np.float64) for name, values in columns.items()}
         last = last_digits(columns) if last is None else last
     except (ValueError, TypeError):
-        raise RunFailed(FailureKind.UNREADABLE, step, names={"file": file}) from None
+        raise RunFailed(FailureKind.UNREADABLE, step, names={"file": file} | word(columns)) from None
     if len({len(values) for values in numbers.values()}) > 1 or not numbers:
         raise RunFailed(FailureKind.UNREADABLE, step, names={"file": file})
     for name in quantities["x"]:

@@ -1,10 +1,12 @@
 """Time levels of an answer, as its result.json states them."""
 
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from mpm_verify.cases.solvers.readers import why
 from mpm_verify.solver.failure import FailureKind, RunFailed
 
 LAGS = ("v_lag", "F_lag")
@@ -41,18 +43,31 @@ def levels(out: Path, usual: Levels = USUAL) -> Levels:
         data = json.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError:
         return usual
-    except (OSError, ValueError, RecursionError):
-        raise RunFailed(FailureKind.UNREADABLE, -1, names={"file": path.name}) from None
+    except (OSError, ValueError, RecursionError) as error:
+        told = why(path, error) or ({} if isinstance(error, OSError) else {"why": "json"})
+        line = {"line": float(getattr(error, "lineno", 1))}
+        raise RunFailed(FailureKind.UNREADABLE, -1, numbers=line, names={"file": path.name} | told) from None
     return stated(data, path.name, usual)
 
 
 def stated(data: Any, file: str, usual: Levels = USUAL) -> Levels:
     """Time levels of a mapping. Raises RunFailed for what is none."""
-    try:
-        told = {key: float(data[key]) for key in LAGS if key in data}
-        b = data.get("b", usual.b)
-        if not all(abs(lag) <= FARTHEST for lag in told.values()) or b not in ("", *FORCES):
-            raise ValueError
-        return replace(usual, **told, version=str(data.get("version", ""))[:80], b=b)
-    except (ValueError, TypeError, AttributeError):
-        raise RunFailed(FailureKind.UNREADABLE, -1, names={"file": file}) from None
+
+    def unread(why: str, key: str = "") -> RunFailed:
+        numbers = {"farthest": FARTHEST}
+        return RunFailed(FailureKind.UNREADABLE, -1, numbers=numbers, names={"file": file, "why": why, "column": key})
+
+    if not isinstance(data, Mapping):
+        raise unread("no_object")
+    told = {}
+    for key in filter(data.__contains__, LAGS):
+        try:
+            told[key] = float(data[key])
+        except (ValueError, TypeError, OverflowError):
+            raise unread("lag", key) from None
+        if not abs(told[key]) <= FARTHEST:
+            raise unread("lag", key)
+    b = data.get("b", usual.b)
+    if b not in ("", *FORCES):
+        raise unread("b")
+    return replace(usual, **told, version=str(data.get("version", ""))[:80], b=b)

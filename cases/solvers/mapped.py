@@ -14,7 +14,7 @@ from mpm_verify.cases.solvers.components import spread
 from mpm_verify.cases.solvers.digits import last_digits
 from mpm_verify.cases.solvers.many import Frames, frames, split
 from mpm_verify.cases.solvers.matching import matched
-from mpm_verify.cases.solvers.readers import Columns
+from mpm_verify.cases.solvers.readers import Columns, why, word
 from mpm_verify.mms.components import AXES
 from mpm_verify.solver.failure import FailureKind, RunFailed
 from mpm_verify.solver.state import Floats
@@ -76,8 +76,8 @@ def opened(paths: Sequence[Path], given: ColumnMap, key: str, step: int) -> list
         except KeyError as error:
             names = {"file": path.name, "column": str(error.args[0])}
             raise RunFailed(FailureKind.NO_COLUMN, step, names=names) from None
-        except Exception:  # of several libraries, for anything that is not such a file
-            raise RunFailed(FailureKind.UNREADABLE, step, names={"file": path.name}) from None
+        except Exception as error:  # of several libraries, for anything that is not such a file
+            raise RunFailed(FailureKind.UNREADABLE, step, names={"file": path.name} | why(path, error)) from None
     return found
 
 
@@ -116,7 +116,8 @@ def translated(columns: Columns, given: ColumnMap, X: Floats, spacing: float, fi
                    + (0.0 if isinstance(column.add, str) else column.add)
                    for name, (values, column) in written.items()}  # fmt: skip
     except (ValueError, TypeError):
-        raise RunFailed(FailureKind.UNREADABLE, step, names={"file": file}) from None
+        found = word({name: values for name, (values, _) in written.items()})
+        raise RunFailed(FailureKind.UNREADABLE, step, names={"file": file} | found) from None
     last = {name: values * abs(written[name][1].factor) for name, values in last.items()}
     moved = {
         name: X[:, k]

@@ -23,7 +23,7 @@ def matched(columns: dict[str, Floats], X: Floats, spacing: float, file: str, st
         order = np.argsort(given, kind="stable")
         if not np.array_equal(given[order], np.arange(len(X))):
             same = len(np.unique(given[np.isin(given, np.arange(len(X)))]))
-            raise others(same, len(X), file, step)
+            raise others(same, len(X), file, step, **wrong(given, len(X)))
         return order
     axes = AXES[: X.shape[1]].upper()
     if not set(axes) <= columns.keys():
@@ -43,7 +43,14 @@ def matched(columns: dict[str, Floats], X: Floats, spacing: float, file: str, st
     return order
 
 
-def others(found: int, expected: int, file: str, step: int) -> RunFailed:
+def wrong(given: Floats, expected: int) -> dict[str, float]:
+    """First of ids (n,) that is there `twice`, and first that no particle has, `other`; each where there is one."""
+    ids, counts = np.unique(given[np.isfinite(given)], return_counts=True)
+    strange = ids[~np.isin(ids, np.arange(expected))]
+    return {name: float(found[0]) for name, found in (("twice", ids[counts > 1]), ("other", strange)) if len(found)}
+
+
+def others(found: int, expected: int, file: str, step: int, **more: float) -> RunFailed:
     """Error of an answer that does not have the particles that were given."""
-    numbers = {"found": float(found), "expected": float(expected)}
+    numbers = {"found": float(found), "expected": float(expected)} | more
     return RunFailed(FailureKind.OTHER_PARTICLES, step, numbers=numbers, names={"file": file})

@@ -19,8 +19,27 @@ def table(path: Path, step: int, dimension: int = 2) -> dict[str, Any]:
         stored = dict({".npz": arrays, ".vtu": mesh}.get(path.suffix, text)(path))
         points = {"x": stored.pop("points")} if path.suffix == ".vtu" else {}
         return spread({**points, **stored}, dimension)
-    except Exception:  # of three libraries, for anything that is not such a file
-        raise RunFailed(FailureKind.UNREADABLE, step, names={"file": path.name}) from None
+    except Exception as error:  # of three libraries, for anything that is not such a file
+        raise RunFailed(FailureKind.UNREADABLE, step, names={"file": path.name} | why(path, error)) from None
+
+
+def why(path: Path, error: Exception) -> dict[str, str]:
+    """Code of the reason why a file cannot be read, empty, no_text or ragged, by `why`; nothing where it is another."""
+    if path.is_file() and not path.read_bytes().strip():
+        return {"why": "empty"}
+    known = {"UnicodeDecodeError": "no_text", "ParserError": "ragged"}.get(type(error).__name__)
+    return {"why": known} if known else {}
+
+
+def word(columns: Columns) -> dict[str, str]:
+    """First value that is not a number, by `word`, with its `column`; nothing where there is none."""
+    for name, values in columns.items():
+        for value in np.ravel(values):
+            try:
+                float(value)
+            except (ValueError, TypeError):
+                return {"why": "word", "word": ascii(str(value))[:40], "column": name}
+    return {}
 
 
 def text(path: Path) -> Columns:

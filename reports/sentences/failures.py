@@ -26,6 +26,16 @@ CAUSES = {
     FailureKind.OSCILLATES: "the values go to and fro",
     FailureKind.NO_ERROR: "no error",
 }
+WHY = {  # of a file that cannot be read
+    "empty": "it is empty",
+    "no_text": "it is no text in UTF-8",
+    "ragged": "a row has more values than the first line has names",
+    "word": "{word} in column {column} is not a number",
+    "json": "it is no JSON, line {line:g}",
+    "no_object": 'it is not of the form {{"v_lag": 0.5}}',
+    "lag": "{column} is not a number from -{farthest:g} to {farthest:g}",
+    "b": "b is neither start nor end",
+}
 WIDTHS = {1.0: "a cell", 2.0: "two cells"}
 
 
@@ -59,14 +69,22 @@ def theirs(failure: Failure) -> str:
     if k is FailureKind.NO_ANSWER:
         return f"the solver has not written {file}"
     if k is FailureKind.UNREADABLE:
-        return f"{file} cannot be read"
+        why = WHY.get(failure.names.get("why", ""), "").format(**failure.names, **n)
+        return f"{file} cannot be read{': ' * bool(why)}{why}"
     if k is FailureKind.NOT_FINITE:
         return f"a value that is not finite in {file}"
     if k is FailureKind.NO_COLUMN:
         return f"{file} has no column {failure.names['column']}"
     if k is FailureKind.OTHER_PARTICLES:
-        return f"{file} has {n['found']:g} of the {n['expected']:g} particles that were given"
+        return f"{file} has {n['found']:g} of the {n['expected']:g} particles that were given{ids(n)}"
     return ""
+
+
+def ids(n: dict[str, float]) -> str:
+    """Reason by an id, `: id 3 is there twice`; empty where none is told."""
+    if "twice" in n:
+        return f": id {n['twice']:g} is there twice"
+    return f": id {n['other']:g} is none of 0 to {n['expected'] - 1:g}" if "other" in n else ""
 
 
 def code(number: int) -> str:
