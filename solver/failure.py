@@ -13,7 +13,7 @@ class FailureKind(StrEnum):
     DOMAIN_TOO_WIDE = "domain_too_wide"  # for the support nodes of its basis [width, limit, in cells]
     NO_WIDTH = "no_width"  # a domain of no width
     SLAB = "slab"  # a particle domain as wide as the grid
-    NOT_FINITE = "not_finite"  # x, v, F or sigma of a particle
+    NOT_FINITE = "not_finite"  # x, v, F or sigma of a particle [value, where it is too large to be squared]
     ERROR_NOT_FINITE = "error_not_finite"  # an error norm
     UNSTABLE_STEP = "unstable_step"  # a wave crosses more than a cell in a step [dt, limit]
     EMPTY_CELL = "empty_cell"  # no particle in a cell that the body fills

@@ -206,6 +206,7 @@ BAD: dict[str, tuple[Callable[[Path], None], FailureKind, str]] = {
     "an id that is none": (with_value(999.0, 0), FailureKind.OTHER_PARTICLES, "id 999 is none of 0 to 63"),
     "not a number": (with_value(np.nan), FailureKind.NOT_FINITE, "not finite"),
     "infinite": (with_value(np.inf), FailureKind.NOT_FINITE, "not finite"),
+    "1e200": (with_value(-1e200), FailureKind.NOT_FINITE, "a value of 1e+200 in result_3.csv, too large for an error"),
     "no x": (broken("id,y\n" + "".join(f"{k},0\n" for k in range(64))), FailureKind.NO_COLUMN, "no column x"),
     "no name": (broken("x,y\n" + "0,0\n" * 64), FailureKind.NO_COLUMN, "no column id"),
     "other positions": (broken("X,Y,x,y\n" + "9,9,9,9\n" * 64), FailureKind.OTHER_PARTICLES, "0 of the 64"),

@@ -22,6 +22,8 @@ from mpm_verify.cases.solvers.readers import ENDINGS, table, word
 from mpm_verify.solver.failure import FailureKind, RunFailed
 from mpm_verify.solver.state import Floats
 
+HUGE = 1e70  # values whose fourth powers are still finite
+
 
 @dataclass(frozen=True)
 class Frame:
@@ -112,6 +114,9 @@ def framed(
         if not np.isfinite(values).all():
             particle = int(np.argwhere(~np.isfinite(values).all(axis=1))[0, 0])
             raise RunFailed(FailureKind.NOT_FINITE, step, particle, names={"file": file})
+        if (largest := float(np.abs(values).max(initial=0.0))) > HUGE:
+            particle = int(np.abs(values).max(axis=1).argmax())
+            raise RunFailed(FailureKind.NOT_FINITE, step, particle, numbers={"value": largest}, names={"file": file})
         found[quantity] = values
         told = np.stack([last.get(name, np.zeros(len(order)))[order] for name in names], axis=-1)
         digits[quantity] = np.maximum(told, single(values))

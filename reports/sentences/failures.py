@@ -72,6 +72,8 @@ def theirs(failure: Failure) -> str:
         why = WHY.get(failure.names.get("why", ""), "").format(**failure.names, **n)
         return f"{file} cannot be read{': ' * bool(why)}{why}"
     if k is FailureKind.NOT_FINITE:
+        if "value" in n:
+            return f"a value of {n['value']:.0e} in {file}, too large for an error of it"
         return f"a value that is not finite in {file}"
     if k is FailureKind.NO_COLUMN:
         return f"{file} has no column {failure.names['column']}"

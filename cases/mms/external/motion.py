@@ -41,7 +41,8 @@ def rms(values: Floats) -> float:
 def single(e: Evidence) -> dict[str, float]:
     """Rounding of single precision over the error of u, where every number of x and v is one of it."""
     values = np.concatenate([e.given(key).ravel() for key in ("x", "v") if e.has(key)])
-    near = values.astype(np.float32).astype(np.float64)
+    with np.errstate(over="ignore"):  # beyond the range of single precision it is infinite, and not near
+        near = values.astype(np.float32).astype(np.float64)
     if not np.isfinite(near).all() or np.any(np.abs(values - near) > 1e-9 * np.abs(values)):
         return {}
     if np.sum(np.abs(values - values.astype(np.float16).astype(np.float64)) > 0) < MANY:
