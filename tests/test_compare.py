@@ -286,6 +286,16 @@ def at_rest(given: Given) -> Frames:
     return {step: {"x": given.array("x")} for step in given.record.frames}
 
 
+@pytest.mark.parametrize("solution", [SMALL, LARGE])
+def test_a_body_that_does_not_move_is_near_to_nothing(solution: str) -> None:
+    found = held(at_rest, (HAT,), solution).compared
+    assert found.still
+    assert found.outcome is not Agreement.AGREES
+    assert words.outcome(found).startswith("Nothing moves: no particle leaves its start")
+    assert words.sentences(found) == []
+    assert not held(rounded, (HAT,), SMALL).compared.still
+
+
 def test_no_reference_comes_to_its_end() -> None:
     found = held(at_rest, (HAT,), "bump:A=0.05", 32).compared
     assert found.outcome is Agreement.NO_REFERENCE

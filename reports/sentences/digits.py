@@ -41,6 +41,11 @@ def outcome(found: Compared) -> str:
         return f"There is no answer to compare: {failures.failure(found.failure)}."
     if not found.against:
         return f"No run of the reference came to its end: {failed(found)}."
+    if found.still:
+        return (
+            "Nothing moves: no particle leaves its start in the digits of the files, so no reference is near. "
+            "If the body does move, write 17 digits."
+        )
     near, of = found.nearest, "particles" if found.framed else "rms values"
     name, least = scheme(near.scheme), min(near.agreement.values())
     if not found.parts:
@@ -100,6 +105,8 @@ def failed(found: Compared) -> str:
 
 def sentences(found: Compared) -> list[str]:
     """All that is said below the table."""
+    if found.still:
+        return []
     said = [parting(one, number == 0) for number, one in enumerate(found.partings)]
     said += [limited(found)] if found.limited else []
     said += alike(found.alike)

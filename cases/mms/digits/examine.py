@@ -10,7 +10,9 @@ from mpm_verify.cases.mms.digits.records import Against, Compared
 from mpm_verify.cases.mms.digits.reference import Scheme, reference, run_frames
 from mpm_verify.cases.mms.digits.table import alike, by_rms, stored
 from mpm_verify.cases.mms.exact import manufactured
+from mpm_verify.cases.mms.external.evidence import Evidence
 from mpm_verify.cases.mms.external.execute import answered, exported
+from mpm_verify.cases.mms.external.motion import still
 from mpm_verify.cases.mms.run import Run
 from mpm_verify.cases.solvers.asking import Answer, positions
 from mpm_verify.mms.export.case import Exported
@@ -81,15 +83,15 @@ def examine(
     exact, X = manufactured(run.solution, run.material), positions(case)
     theirs = errors(exact, X, case.record.dt, answer.frames, answer.told)
     own = {q: rms(error, case.particles["V0"]) for q, error in theirs.items()}
-    near = by_rms(own, known)
+    near, rests = by_rms(own, known), bool(still(Evidence(exact, case, answer.frames, answer.told)))
     if stored_only:
         limit, twins = (limits(answer, near[0].rms), alike(near[0], near)) if near else ({}, ())
-        return Examined(run, Compared(own, limit, near, alike=twins))
+        return Examined(run, Compared(own, limit, near, alike=twins, still=rests))
     names = [one.scheme for one in near[:NEAREST]] if near else list(chosen)
     found = against_frames(run, case, answer, theirs, names, tick)
     farther = [one for one in near if one.scheme not in names]
     twins = alike(found.compared.nearest, [*found.compared.against, *farther]) if found.compared.against else ()
-    return replace(found, compared=replace(found.compared, rms=own, farther=len(farther), alike=twins))
+    return replace(found, compared=replace(found.compared, rms=own, farther=len(farther), alike=twins, still=rests))
 
 
 def against_frames(

@@ -124,6 +124,8 @@ class Compared:
         Reason why there is no answer.
     log
         What the solver printed.
+    still
+        Whether no particle leaves its start, in the digits that the files have: then no reference is near.
     """
 
     rms: dict[str, float]
@@ -136,6 +138,7 @@ class Compared:
     alike: tuple[Alike, ...] = ()
     failure: Failure | None = None
     log: Log = EMPTY
+    still: bool = False
 
     @property
     def nearest(self) -> Against:
