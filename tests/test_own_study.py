@@ -17,6 +17,7 @@ from mpm_verify.cases.mms.execute import execute
 from mpm_verify.cases.mms.expectations import expected, promised
 from mpm_verify.cases.mms.stability import rounded, speed_parameter
 from mpm_verify.mms.cells import check_cells, fits, fitting, ratio
+from mpm_verify.reports.sentences import commands
 from mpm_verify.solver.plugins import SOLUTIONS, create, label
 from mpm_verify.verify.main import main
 
@@ -225,6 +226,18 @@ def test_a_study_without_end_is_refused(tmp_path: Path) -> None:
     Path(path).write_text(Path(path).read_text().replace('"duration": 0.02', '"duration": 1e4'))
     with pytest.raises(ValueError, match=r"own: a run would take 1\.6e\+08 time steps to fill the duration of 10000;"):
         swept(solution=path, cells=64)
+
+
+BAR = "; mpm has nothing registered on bar1d with 2 per cell: type --order 2, or --solution bar1d:A=1e-6"
+
+
+@pytest.mark.parametrize(("method", "says"), [("mpm", BAR), ("", "; say what is expected: --order 2, or --as METHOD")])
+def test_where_nothing_is_registered_of_the_method_that_was_typed(method: str, says: str) -> None:
+    asked = {"solver": [f"{sys.executable} {{case}} {{out}}"], "solution": ["bar1d"], "cells": [8]}
+    study = build(Asked("mms", asked | ({"method": [method]} if method else {})), "")
+    assert not any(plan.judged for plan in study.plans)
+    assert commands.unregistered(study) == says
+    assert commands.unregistered(build(Asked("mms", {"method": ["mpm"], "cells": [8]}), "")) == ""
 
 
 def test_words(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 import os
 import shlex
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
@@ -10,10 +11,11 @@ from typing import Any
 from mpm_verify.cases.harness.study import QuantityPlan, Study, head
 from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.cases.judging.records import Action, Outcome, ReasonCode, Wanted
+from mpm_verify.cases.mms.expectations import expected
 from mpm_verify.mms.discretisation import axisymmetric, dimension
 from mpm_verify.reports.sentences import any_code, own_solver, verdicts
 from mpm_verify.solver.failure import FailureKind
-from mpm_verify.solver.plugins import SOLUTIONS, create, is_file, split
+from mpm_verify.solver.plugins import METHODS, SOLUTIONS, available, canonical, create, is_file, label, split
 
 
 def reason(study: Study[Any], found: Finding) -> str:
@@ -50,6 +52,29 @@ def decides(study: Study[Any], found: Finding, folder: Path | None = None) -> st
     if run.given and wanted:
         return any_code.advice(wanted, run.by, [level.h for level in found.levels], run.exact)
     return command(study, found, folder)
+
+
+def unregistered(study: Study[Any]) -> str:
+    """Phrase on what to type where nothing is registered of a solver of somebody else; empty of any other study."""
+    run = study.runs[0]
+    if not getattr(run, "solver", "") or "start" in study.axes:
+        return ""
+    if split(run.method)[0] not in available(METHODS):
+        return "; say what is expected: --order 2, or --as METHOD"
+    also = f", or --solution {small}" if (small := small_motion(run)) else ""
+    return (
+        f"; {run.method} has nothing registered on {label(run.solution)} with {run.ppc} per cell: type --order 2{also}"
+    )
+
+
+def small_motion(run: Any) -> str:
+    """Solution of a run with a motion that is next to nothing, of which something is registered; empty without one."""
+    for key in () if is_file(run.solution) else ("A", "G"):
+        small = f"{split(run.solution)[0]}:{key}=1e-6"
+        with suppress(ValueError):
+            if expected(run.method, canonical(SOLUTIONS, small), run.material, run.ppc, "u", "rms"):
+                return small
+    return ""
 
 
 def no_step_decides(found: Finding) -> bool:

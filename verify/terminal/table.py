@@ -78,8 +78,7 @@ def show(record: Record, page: Path | None, console: Console | None = None) -> N
     if free := commands.walls(study, found, record.store.folder):
         out.print(f"  this would tell whether its walls are why: {free}", soft_wrap=True, markup=False)
     if not any(f.counts for f in found):
-        theirs = any(getattr(run, "solver", "") for run in study.runs) and "start" not in study.axes
-        hint = "; say what is expected: --order 2, or --as METHOD" if theirs else ""
+        hint = commands.unregistered(study)
         out.print(f"INCONCLUSIVE: nothing here has a registered expectation, so nothing is judged{hint}.")
     where(out, page, "\nMore quantities and norms, figures, and how it was made:")
 
