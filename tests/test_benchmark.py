@@ -196,6 +196,9 @@ def test_a_material_is_completed_by_the_problem() -> None:
         (["colliding_bars", "--method", "tlmpm"], "never meet"),
         (["cell_crossing", "--cells", "8"], "take 12 or more"),
         (["colliding_bars:speed=2"], "at most 0.3"),
+        (["colliding_bars", "--material", "hencky"], "closed form is that of linear_elastic alone"),
+        (["sliding_block", "--material", "mohr_coulomb"], "does not keep the stress"),
+        (["colliding_bars", "--offset", "0.5,0.5"], "above -0.5 and below 0.5"),
     ],
 )
 def test_what_cannot_be_is_one_line(

@@ -26,7 +26,7 @@ from mpm_verify.cases.benchmark.problem import Drawn, Held, Measured, Problem, S
 from mpm_verify.cases.benchmark.run import Run
 from mpm_verify.solver.layout import rectangle
 from mpm_verify.solver.model import Model
-from mpm_verify.solver.plugins import METHODS, create
+from mpm_verify.solver.plugins import METHODS, create, split
 
 RUBS, SLIPS = 1.1, 0.7  # friction of the failing control, of a block that slides and of one that sticks
 LONG = 2.0  # length over height: pressed all along its base
@@ -73,7 +73,12 @@ class SlidingBlock(Problem):
         return 0.5 * self.T**2 * float(self.plane.sliding if self.slides else self.plane.gravity[0])
 
     def check(self, run: Run) -> None:
-        """Raise ValueError for a block that tips over, or whose method knows no floor."""
+        """Raise ValueError for a block that tips over, bears no stress at first, or whose method knows no floor."""
+        if split(run.material)[0] != self.material:
+            raise ValueError(
+                f"sliding_block: a block of {run.material} does not keep the stress that it starts with; "
+                "leave --material out"
+            )
         if not 0 < self.theta < 60 or not min(self.g, self.H, self.T, self.mu) > 0:
             raise ValueError("sliding_block: theta must be above 0 and below 60; mu, g, H and T above zero")
         if min(self.mu, self.plane.slope) > LONG / 3:
