@@ -12,10 +12,10 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from mpm_verify.cases.benchmark.case import canonical, completed
+from mpm_verify.cases.benchmark.case import canonical
 from mpm_verify.cases.benchmark.execute import execute
 from mpm_verify.cases.benchmark.exported import exported
-from mpm_verify.cases.benchmark.problem import Held
+from mpm_verify.cases.benchmark.problem import Held, completed
 from mpm_verify.cases.benchmark.problems.cell_crossing import GRADIENTS, formula
 from mpm_verify.cases.benchmark.problems.self_weight import SelfWeight
 from mpm_verify.cases.benchmark.run import Result, Run
@@ -28,6 +28,7 @@ from mpm_verify.solver._jit import use_threads
 from mpm_verify.solver.plugins import MATERIALS, METHODS, PROBLEMS, available, create
 from mpm_verify.solver.state import Particles
 from mpm_verify.verify.main import main
+from mpm_verify.verify.terminal.checks import sentence
 
 SOLIDS = {"hencky": "hencky:E=1e4,nu=0,rho0=80", "neo_hookean": "neo_hookean:E=1e4,nu=0,rho0=80"}
 KNOWN = {"hencky": (0.30370, 24.233), "neo_hookean": (0.12542, 16.362)}
@@ -45,7 +46,13 @@ def ran(problem: str, **axes: Any) -> Result:
 
 def outcomes(problem: str, store: Path, **axes: Any) -> set[str]:
     """Outcomes of the checks of a study."""
-    case, asked = case_named("benchmark"), {"problem": (problem,), **{key: (value,) for key, value in axes.items()}}
+    case, asked = (
+        case_named("benchmark"),
+        {
+            "problem": (problem,),
+            **{key: value if isinstance(value, tuple) else (value,) for key, value in axes.items()},
+        },
+    )
     study = build(Asked("benchmark", asked), "")
     results = {run.digest: execute(run)[0] for run in study.runs}
     assert case.examine is not None
@@ -159,9 +166,11 @@ def test_bars_exchange_their_velocities() -> None:
 
 
 @pytest.mark.parametrize(
-    ("problem", "cells"), [("self_weight", 8), ("cell_crossing", 20), ("colliding_bars", 32)], ids=lambda one: str(one)
+    ("problem", "cells"),
+    [("self_weight", 8), ("cell_crossing", 20), ("colliding_bars", (8, 16, 32))],
+    ids=lambda one: str(one),
 )
-def test_the_control_fails(problem: str, cells: int, tmp_path: Path) -> None:
+def test_the_control_fails(problem: str, cells: int | tuple[int, ...], tmp_path: Path) -> None:
     """Of the column the force and stress of each cell, of a bar what a spoilt stress or mass changes."""
     assert "FAIL" in outcomes(problem, tmp_path, cells=cells, method="cpdi", control=True)
 
@@ -179,6 +188,18 @@ def test_a_limit_is_held_and_not_the_finest_value() -> None:
     (found,) = case.checks(replace(held, of="finest"), series, empty)
     assert str(found.outcome) == "FAIL"
     assert len(case.checks(replace(held, of="each"), series, empty)) == 3
+
+
+def test_nothing_is_judged_by_a_limit_of_two_grids() -> None:
+    case = case_named("benchmark").module
+    runs = build(Asked("benchmark", {"problem": ("colliding_bars",), "method": ("cpdi",), "cells": (8, 16)}), "").runs
+    empty = {run.digest: replace(ran("cell_crossing"), run=run, values={"a": 1.0}) for run in runs}
+    held = Held("a", 1.0, "absolute", "", 1e-9)
+    (found,) = case.checks(held, case.collect(runs)[0], empty)
+    assert (found.name, str(found.outcome), found.unjudged) == ("a, 16 cells", "INCONCLUSIVE", "few_grids")
+    assert "a limit takes three grids" in sentence(found)
+    (found,) = case.checks(replace(held, of="finest"), case.collect(runs)[0], empty)
+    assert str(found.outcome) == "PASS"
 
 
 def test_a_material_is_completed_by_the_problem() -> None:
