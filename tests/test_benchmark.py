@@ -23,7 +23,9 @@ from mpm_verify.cases.benchmark.uniaxial import nominal, stretch
 from mpm_verify.cases.harness.build import Asked, build
 from mpm_verify.cases.harness.contract import case_named
 from mpm_verify.cases.harness.store import Store
+from mpm_verify.cases.judging.records import Reason, ReasonCode
 from mpm_verify.reports.export.document import schema
+from mpm_verify.reports.sentences.verdicts import shown
 from mpm_verify.solver._jit import use_threads
 from mpm_verify.solver.plugins import MATERIALS, METHODS, PROBLEMS, available, create
 from mpm_verify.solver.state import Particles
@@ -202,6 +204,32 @@ def test_nothing_is_judged_by_a_limit_of_two_grids() -> None:
     assert str(found.outcome) == "PASS"
 
 
+@pytest.mark.parametrize("code", [ReasonCode.DIVERGES, ReasonCode.CONVERGES, ReasonCode.NEITHER])
+def test_of_what_is_only_shown_nothing_was_expected(code: ReasonCode) -> None:
+    reason = Reason(code, {"h_0": 0.125, "error_0": 1.0, "h_1": 0.0625, "error_1": 2.0, "order": 1.0})
+    found = shown(reason)
+    assert found.startswith("nothing is registered of it: the error ")
+    assert "expected" not in found
+    assert "surprise" not in found
+
+
+def test_nothing_is_judged_of_a_column_that_moves() -> None:
+    case = case_named("benchmark").module
+    runs = build(Asked("benchmark", {"problem": ("self_weight",), "method": ("cpdi",), "cells": (8, 12, 16)}), "").runs
+    held = Held("a", 1.0, "absolute", "", 1e-9, rests=True)
+    for at_rest, outcome in ((1.0, "FAIL"), (0.0, "INCONCLUSIVE")):
+        some = {
+            run.digest: replace(
+                ran("cell_crossing"), run=run, values={"a": 2.0, "at_rest": at_rest if run.cells == 12 else 1.0}
+            )
+            for run in runs
+        }
+        assert [str(one.outcome) for one in case.checks(held, case.collect(runs)[0], some)] == [outcome]
+        each = case.checks(replace(held, of="each"), case.collect(runs)[0], some)
+        assert [str(one.outcome) for one in each] == ["FAIL", outcome, "FAIL"]
+    assert ran("self_weight", method="tlmpm", cells=4).values["at_rest"] == 1
+
+
 def test_a_material_is_completed_by_the_problem() -> None:
     assert completed("hencky:E=1", {"E": 2.0, "nu": 0.0, "phi": 3.0}) == "hencky:E=1,nu=0"
     named = canonical({"problem": "self_weight:E=2e4,H=10", "material": "neo_hookean"})
@@ -219,6 +247,7 @@ def test_a_material_is_completed_by_the_problem() -> None:
         (["colliding_bars:speed=2"], "at most 0.3"),
         (["colliding_bars", "--material", "hencky"], "closed form is that of linear_elastic alone"),
         (["sliding_block", "--material", "mohr_coulomb"], "does not keep the stress"),
+        (["self_weight:E=1e300"], "round-off of so stiff a material"),
         (["colliding_bars", "--offset", "0.5,0.5"], "above -0.5 and below 0.5"),
     ],
 )

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from math import nan
 from typing import Any
 
-from mpm_verify.cases.benchmark.problem import Held, completed
+from mpm_verify.cases.benchmark.problem import AT_REST, Held, completed
 from mpm_verify.cases.benchmark.run import Result, Run
 from mpm_verify.cases.harness.build import Asked
 from mpm_verify.cases.harness.checks import Check, Unjudged
@@ -118,7 +118,7 @@ def checks(held: Held, series: Series, results: Mapping[str, Result]) -> list[Ch
 
     def made(name: str, found: float, result: Result | None = None, unjudged: Unjudged = "") -> Check:
         failure = result.failure if result else None
-        why = held.unjudged or unjudged
+        why = held.unjudged or unjudged or moving(held, [result] if result else [])
         return Check(group, name, found, held.expected, held.way, held.source, held.within, failure, why)
 
     if held.of == "each":
@@ -130,10 +130,15 @@ def checks(held: Held, series: Series, results: Mapping[str, Result]) -> list[Ch
     if failed:
         return [made(held.name, nan, failed)]
     h, f = zip(*((1 / run.cells, value(held, one)) for run, one in done[: -LEVELS - 1 : -1]), strict=True)
-    limit = extrapolate(h, f)
+    limit, why = extrapolate(h, f), moving(held, [one for _, one in done[-LEVELS:]])
     if limit.kind in ("converges", "equal"):
-        return [made(f"{held.name}, limit", limit.limit)]
-    return [made(f"{held.name}, {done[-1][0].cells} cells", limit.finest)]
+        return [made(f"{held.name}, limit", limit.limit, unjudged=why)]
+    return [made(f"{held.name}, {done[-1][0].cells} cells", limit.finest, unjudged=why)]
+
+
+def moving(held: Held, results: Sequence[Result]) -> Unjudged:
+    """Mark of a number at rest where one of the runs that it is made of ended before."""
+    return "not_at_rest" if held.rests and any(one.values.get(AT_REST) == 0 for one in results) else ""
 
 
 def value(held: Held, result: Result) -> float:

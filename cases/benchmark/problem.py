@@ -25,6 +25,7 @@ from mpm_verify.solver.state import Floats, Particles
 Pair = tuple[str, str]  # quantity and norm
 Errors = dict[str, dict[str, float]]
 CONSTANTS = ("E", "nu", "rho0")  # parameters of a problem that are its material's too
+AT_REST = "at_rest"  # value of a run: 1, or 0 of one that ended before
 FIGURE, EXACT = "curves/", "exact"  # array curves/FIGURE/CURVE (2,n), x and y; EXACT is the known answer
 
 
@@ -93,6 +94,8 @@ class Held:
         fewer than three of the others nothing is held. 0 where coarse grids are as near as fine ones.
     unjudged
         Why the number is shown and not judged, such as parameters that its band was not measured at; usual is nothing.
+    rests
+        Whether it is that of a body at rest, so that nothing is judged of a run whose value AT_REST is 0.
     """
 
     name: str
@@ -103,6 +106,7 @@ class Held:
     of: Literal["limit", "finest", "each"] = "limit"
     least: int = 0
     unjudged: Unjudged = ""
+    rests: bool = False
 
 
 @dataclass(frozen=True)
