@@ -5,6 +5,7 @@ from dataclasses import asdict, replace
 from functools import cache
 from math import log2
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import jsonschema
@@ -12,6 +13,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 
+from mpm_verify.cases.benchmark import case
 from mpm_verify.cases.benchmark.case import canonical
 from mpm_verify.cases.benchmark.execute import execute
 from mpm_verify.cases.benchmark.exported import exported
@@ -21,10 +23,12 @@ from mpm_verify.cases.benchmark.problems.self_weight import SelfWeight
 from mpm_verify.cases.benchmark.run import Result, Run
 from mpm_verify.cases.benchmark.uniaxial import nominal, stretch
 from mpm_verify.cases.harness.build import Asked, build
+from mpm_verify.cases.harness.checks import Check
 from mpm_verify.cases.harness.contract import case_named
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.cases.judging.records import Reason, ReasonCode
 from mpm_verify.reports.export.document import schema
+from mpm_verify.reports.sentences.benchmark import control
 from mpm_verify.reports.sentences.verdicts import shown
 from mpm_verify.solver._jit import use_threads
 from mpm_verify.solver.plugins import MATERIALS, METHODS, PROBLEMS, available, create
@@ -48,7 +52,7 @@ def ran(problem: str, **axes: Any) -> Result:
 
 def outcomes(problem: str, store: Path, **axes: Any) -> set[str]:
     """Outcomes of the checks of a study."""
-    case, asked = (
+    benchmark, asked = (
         case_named("benchmark"),
         {
             "problem": (problem,),
@@ -57,8 +61,8 @@ def outcomes(problem: str, store: Path, **axes: Any) -> set[str]:
     )
     study = build(Asked("benchmark", asked), "")
     results = {run.digest: execute(run)[0] for run in study.runs}
-    assert case.examine is not None
-    return {str(check.outcome) for check in case.examine(study, results, Store(store, "benchmark")).checks}
+    assert benchmark.examine is not None
+    return {str(check.outcome) for check in benchmark.examine(study, results, Store(store, "benchmark")).checks}
 
 
 @pytest.mark.parametrize("name", list(SOLIDS))
@@ -178,7 +182,6 @@ def test_the_control_fails(problem: str, cells: int | tuple[int, ...], tmp_path:
 
 
 def test_a_limit_is_held_and_not_the_finest_value() -> None:
-    case = case_named("benchmark").module
     runs = build(
         Asked("benchmark", {"problem": ("colliding_bars",), "method": ("cpdi",), "cells": (8, 16, 32)}), ""
     ).runs
@@ -193,7 +196,6 @@ def test_a_limit_is_held_and_not_the_finest_value() -> None:
 
 
 def test_nothing_is_judged_by_a_limit_of_two_grids() -> None:
-    case = case_named("benchmark").module
     runs = build(Asked("benchmark", {"problem": ("colliding_bars",), "method": ("cpdi",), "cells": (8, 16)}), "").runs
     empty = {run.digest: replace(ran("cell_crossing"), run=run, values={"a": 1.0}) for run in runs}
     held = Held("a", 1.0, "absolute", "", 1e-9)
@@ -214,7 +216,6 @@ def test_of_what_is_only_shown_nothing_was_expected(code: ReasonCode) -> None:
 
 
 def test_nothing_is_judged_of_a_column_that_moves() -> None:
-    case = case_named("benchmark").module
     runs = build(Asked("benchmark", {"problem": ("self_weight",), "method": ("cpdi",), "cells": (8, 12, 16)}), "").runs
     held = Held("a", 1.0, "absolute", "", 1e-9, rests=True)
     for at_rest, outcome in ((1.0, "FAIL"), (0.0, "INCONCLUSIVE")):
@@ -274,6 +275,23 @@ def test_the_command_judges_and_its_control_fails(
         document = json.loads(capsys.readouterr().out)
         jsonschema.validate(document, schema("benchmark"))
         assert ended.value.code == code == document["exit_code"]
+
+
+@pytest.mark.parametrize(
+    ("found", "says"),
+    [
+        ((2.0, 1.0, 2.0), "The failing control failed, as it must: 2 of 3 refused."),
+        ((1.0, 1.0), "ALARM: a control that must fail passed"),
+        ((1.0, np.nan), "is undecided, or ended in an error"),
+    ],
+)
+def test_a_control_that_passes_is_the_alarm(found: tuple[float, ...], says: str) -> None:
+    run = Run(control=True)
+    some = tuple(Check(case.part(run), "a", one, 1.0, "absolute", "", 0.1) for one in found)
+    record: Any = SimpleNamespace(study=SimpleNamespace(runs=[run]), findings=(), analysis=SimpleNamespace(checks=some))
+    assert says in control(record)
+    record.study.runs = [Run()]
+    assert control(record) == ""
 
 
 def test_a_page_states_each_problem(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

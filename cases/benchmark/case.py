@@ -107,11 +107,15 @@ def examine(study: Study[Run], results: Mapping[str, Result], store: Store) -> B
     )
 
 
+def part(run: Run) -> str:
+    """Group of the checks of a refinement, such as `self_weight, cpdi`."""
+    smoothed = "" if run.smoothing == Run.smoothing else f" {label(run.smoothing)}"
+    return f"{label(run.problem)}, {label(run.method)}{smoothed}" + ", failing control" * run.control
+
+
 def checks(held: Held, series: Series, results: Mapping[str, Result]) -> list[Check]:
     """Checks of one number of a refinement."""
-    first = series.first
-    smoothed = "" if first.smoothing == Run.smoothing else f" {label(first.smoothing)}"
-    group = f"{label(first.problem)}, {label(first.method)}{smoothed}" + ", failing control" * first.control
+    group = part(series.first)
     done = [(run, results[run.digest]) for run in series.runs if run.digest in results and run.cells >= held.least]
     if held.least and len(done) < LEVELS:
         return []
