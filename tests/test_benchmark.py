@@ -36,6 +36,11 @@ from mpm_verify.solver.state import Particles
 from mpm_verify.verify.main import main
 from mpm_verify.verify.terminal.checks import sentence
 
+SHORT = (  # file of a problem of one's own
+    '"""Short column: that of the benchmarks, lower."""\nfrom dataclasses import dataclass\n'
+    "from mpm_verify.cases.benchmark.problems.self_weight import SelfWeight\n\n\n"
+    "@dataclass(frozen=True)\nclass ShortColumn(SelfWeight):\n    H: float = 5.0\n"
+)
 SOLIDS = {"hencky": "hencky:E=1e4,nu=0,rho0=80", "neo_hookean": "neo_hookean:E=1e4,nu=0,rho0=80"}
 KNOWN = {"hencky": (0.30370, 24.233), "neo_hookean": (0.12542, 16.362)}
 
@@ -307,11 +312,7 @@ def test_a_page_states_each_problem(tmp_path: Path, monkeypatch: pytest.MonkeyPa
 
 def test_a_problem_of_ones_own_is_a_file(tmp_path: Path) -> None:
     own = tmp_path / "short_column.py"
-    own.write_text(
-        '"""Short column: that of the benchmarks, lower."""\nfrom dataclasses import dataclass\n'
-        "from mpm_verify.cases.benchmark.problems.self_weight import SelfWeight\n\n\n"
-        "@dataclass(frozen=True)\nclass ShortColumn(SelfWeight):\n    H: float = 5.0\n"
-    )
+    own.write_text(SHORT)
     run = Run(**canonical({"problem": str(own), "cells": 4}))
     found = execute(run)[0]
     assert found.values["cell_stress"] < 1e-8 * 80 * 9.81 * 5
@@ -342,6 +343,17 @@ def test_every_problem_is_exported(
     assert {edge["kind"] for edge in case["edges"].values()} <= {"free", "roller", "fixed", "frictional", "pushed"}
     flat = dict(line.split(" ", 1) for line in (tmp_path / "case.txt").read_text().splitlines())
     assert float(flat["dx"]) == case["dx"]
+
+
+def test_a_problem_of_ones_own_is_exported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    own = tmp_path / "short_column.py"
+    own.write_text(SHORT)
+    monkeypatch.setattr("sys.argv", ["verify", "export", str(own), "--cells", "4", "--to", str(tmp_path / "case")])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    table = np.genfromtxt(tmp_path / "case" / "particles.csv", delimiter=",", names=True)
+    assert ended.value.code == 0
+    assert table["V0"].sum() == pytest.approx(5.0 * 1.25)
 
 
 def test_an_exported_column_says_where_it_rests() -> None:
