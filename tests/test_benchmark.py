@@ -28,6 +28,7 @@ from mpm_verify.cases.harness.contract import case_named
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.cases.judging.records import Reason, ReasonCode
 from mpm_verify.reports.export.document import schema
+from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences.benchmark import control
 from mpm_verify.reports.sentences.verdicts import shown
 from mpm_verify.solver._jit import use_threads
@@ -297,6 +298,15 @@ def test_a_control_that_passes_is_the_alarm(found: tuple[float, ...], says: str)
     assert says in control(record)
     record.study.runs = [Run()]
     assert control(record) == ""
+
+
+def test_a_label_leaves_out_what_goes_with_the_problem(tmp_path: Path) -> None:
+    for materials, told in (((), "CPDI, 4 per cell, problem self_weight"), (("hencky", "neo_hookean"), "material")):
+        more = {"material": materials} if materials else {"problem": ("self_weight", "cell_crossing")}
+        study = build(Asked("benchmark", {"problem": ("self_weight",), "method": ("cpdi",), **more}, quick=True), "")
+        record = Record(Store(tmp_path, "benchmark"), study, {}, False)
+        assert told in record.label(study.runs[0])
+        assert ("material" in record.label(study.runs[0])) is bool(materials)
 
 
 def test_a_page_states_each_problem(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
