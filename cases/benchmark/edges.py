@@ -41,7 +41,7 @@ class EdgeRecord:
 
 @dataclass(frozen=True)
 class PushedRecord:
-    """Nodes with a given velocity along an axis, that of a travel; they stay where they are.
+    """Nodes with a given velocity on an axis, that of a travel; they stay where they are.
 
     Parameters
     ----------
