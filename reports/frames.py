@@ -67,6 +67,16 @@ class Record:
                      if name not in (*USUAL, *SAID) and len({head[name] for head in heads}) > 1)  # fmt: skip
 
     @cached_property
+    def implied(self) -> tuple[str, ...]:
+        """Fields that vary only because problems differ, such as their material."""
+        heads = [dict(series.head) for series in self.series]
+        if "problem" not in self.varied:
+            return ()
+        problems = len({head["problem"] for head in heads})
+        pairs = {name: len({(head["problem"], head[name]) for head in heads}) for name in self.varied}
+        return tuple(name for name, count in pairs.items() if name != "problem" and count == problems)
+
+    @cached_property
     def drawn(self) -> list[Series]:
         """Refinements that figures show: of what else varies, those with the first value that their solution has."""
         first: dict[str, tuple[Any, ...]] = {}
@@ -87,7 +97,7 @@ class Record:
         """Name of the refinement of a run on a page: method and particle count, and what else varies in the study."""
         several = solution and len(self.solutions) > 1
         more = [label(run.solution)] if several else []
-        more += [f"{name} {getattr(run, name)}" for name in self.varied]
+        more += [f"{name} {getattr(run, name)}" for name in self.varied if name not in self.implied]
         return ", ".join([words.series(run), *more])
 
     @property

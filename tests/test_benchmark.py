@@ -5,6 +5,7 @@ from dataclasses import asdict, replace
 from functools import cache
 from math import log2
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import jsonschema
@@ -12,24 +13,36 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from mpm_verify.cases.benchmark.case import canonical, completed
+from mpm_verify.cases.benchmark import case
+from mpm_verify.cases.benchmark.case import canonical
 from mpm_verify.cases.benchmark.execute import execute
 from mpm_verify.cases.benchmark.exported import exported
-from mpm_verify.cases.benchmark.problem import Held
+from mpm_verify.cases.benchmark.problem import Held, completed
 from mpm_verify.cases.benchmark.problems.cell_crossing import GRADIENTS, formula
 from mpm_verify.cases.benchmark.problems.self_weight import SelfWeight
 from mpm_verify.cases.benchmark.run import Result, Run
 from mpm_verify.cases.benchmark.uniaxial import nominal, stretch
 from mpm_verify.cases.harness.build import Asked, build
+from mpm_verify.cases.harness.checks import Check
 from mpm_verify.cases.harness.contract import case_named
 from mpm_verify.cases.harness.store import Store
+from mpm_verify.cases.judging.records import Reason, ReasonCode
 from mpm_verify.reports.export.case_folder import read
 from mpm_verify.reports.export.document import schema
+from mpm_verify.reports.frames import Record
+from mpm_verify.reports.sentences.benchmark import control
+from mpm_verify.reports.sentences.verdicts import shown
 from mpm_verify.solver._jit import use_threads
 from mpm_verify.solver.plugins import MATERIALS, METHODS, PROBLEMS, available, create
 from mpm_verify.solver.state import Particles
 from mpm_verify.verify.main import main
+from mpm_verify.verify.terminal.checks import sentence
 
+SHORT = (  # file of a problem of one's own
+    '"""Short column: that of the benchmarks, lower."""\nfrom dataclasses import dataclass\n'
+    "from mpm_verify.cases.benchmark.problems.self_weight import SelfWeight\n\n\n"
+    "@dataclass(frozen=True)\nclass ShortColumn(SelfWeight):\n    H: float = 5.0\n"
+)
 SOLIDS = {"hencky": "hencky:E=1e4,nu=0,rho0=80", "neo_hookean": "neo_hookean:E=1e4,nu=0,rho0=80"}
 KNOWN = {"hencky": (0.30370, 24.233), "neo_hookean": (0.12542, 16.362)}
 
@@ -46,11 +59,17 @@ def ran(problem: str, **axes: Any) -> Result:
 
 def outcomes(problem: str, store: Path, **axes: Any) -> set[str]:
     """Outcomes of the checks of a study."""
-    case, asked = case_named("benchmark"), {"problem": (problem,), **{key: (value,) for key, value in axes.items()}}
+    benchmark, asked = (
+        case_named("benchmark"),
+        {
+            "problem": (problem,),
+            **{key: value if isinstance(value, tuple) else (value,) for key, value in axes.items()},
+        },
+    )
     study = build(Asked("benchmark", asked), "")
     results = {run.digest: execute(run)[0] for run in study.runs}
-    assert case.examine is not None
-    return {str(check.outcome) for check in case.examine(study, results, Store(store, "benchmark")).checks}
+    assert benchmark.examine is not None
+    return {str(check.outcome) for check in benchmark.examine(study, results, Store(store, "benchmark")).checks}
 
 
 @pytest.mark.parametrize("name", list(SOLIDS))
@@ -160,15 +179,16 @@ def test_bars_exchange_their_velocities() -> None:
 
 
 @pytest.mark.parametrize(
-    ("problem", "cells"), [("self_weight", 8), ("cell_crossing", 20), ("colliding_bars", 32)], ids=lambda one: str(one)
+    ("problem", "cells"),
+    [("self_weight", 8), ("cell_crossing", 20), ("colliding_bars", (8, 16, 32))],
+    ids=lambda one: str(one),
 )
-def test_the_control_fails(problem: str, cells: int, tmp_path: Path) -> None:
+def test_the_control_fails(problem: str, cells: int | tuple[int, ...], tmp_path: Path) -> None:
     """Of the column the force and stress of each cell, of a bar what a spoilt stress or mass changes."""
     assert "FAIL" in outcomes(problem, tmp_path, cells=cells, method="cpdi", control=True)
 
 
 def test_a_limit_is_held_and_not_the_finest_value() -> None:
-    case = case_named("benchmark").module
     runs = build(
         Asked("benchmark", {"problem": ("colliding_bars",), "method": ("cpdi",), "cells": (8, 16, 32)}), ""
     ).runs
@@ -180,6 +200,42 @@ def test_a_limit_is_held_and_not_the_finest_value() -> None:
     (found,) = case.checks(replace(held, of="finest"), series, empty)
     assert str(found.outcome) == "FAIL"
     assert len(case.checks(replace(held, of="each"), series, empty)) == 3
+
+
+def test_nothing_is_judged_by_a_limit_of_two_grids() -> None:
+    runs = build(Asked("benchmark", {"problem": ("colliding_bars",), "method": ("cpdi",), "cells": (8, 16)}), "").runs
+    empty = {run.digest: replace(ran("cell_crossing"), run=run, values={"a": 1.0}) for run in runs}
+    held = Held("a", 1.0, "absolute", "", 1e-9)
+    (found,) = case.checks(held, case.collect(runs)[0], empty)
+    assert (found.name, str(found.outcome), found.unjudged) == ("a, 16 cells", "INCONCLUSIVE", "few_grids")
+    assert "a limit takes three grids" in sentence(found)
+    (found,) = case.checks(replace(held, of="finest"), case.collect(runs)[0], empty)
+    assert str(found.outcome) == "PASS"
+
+
+@pytest.mark.parametrize("code", [ReasonCode.DIVERGES, ReasonCode.CONVERGES, ReasonCode.NEITHER])
+def test_of_what_is_only_shown_nothing_was_expected(code: ReasonCode) -> None:
+    reason = Reason(code, {"h_0": 0.125, "error_0": 1.0, "h_1": 0.0625, "error_1": 2.0, "order": 1.0})
+    found = shown(reason)
+    assert found.startswith("nothing is registered of it: the error ")
+    assert "expected" not in found
+    assert "surprise" not in found
+
+
+def test_nothing_is_judged_of_a_column_that_moves() -> None:
+    runs = build(Asked("benchmark", {"problem": ("self_weight",), "method": ("cpdi",), "cells": (8, 12, 16)}), "").runs
+    held = Held("a", 1.0, "absolute", "", 1e-9, rests=True)
+    for at_rest, outcome in ((1.0, "FAIL"), (0.0, "INCONCLUSIVE")):
+        some = {
+            run.digest: replace(
+                ran("cell_crossing"), run=run, values={"a": 2.0, "at_rest": at_rest if run.cells == 12 else 1.0}
+            )
+            for run in runs
+        }
+        assert [str(one.outcome) for one in case.checks(held, case.collect(runs)[0], some)] == [outcome]
+        each = case.checks(replace(held, of="each"), case.collect(runs)[0], some)
+        assert [str(one.outcome) for one in each] == ["FAIL", outcome, "FAIL"]
+    assert ran("self_weight", method="tlmpm", cells=4).values["at_rest"] == 1
 
 
 def test_a_material_is_completed_by_the_problem() -> None:
@@ -197,6 +253,10 @@ def test_a_material_is_completed_by_the_problem() -> None:
         (["colliding_bars", "--method", "tlmpm"], "never meet"),
         (["cell_crossing", "--cells", "8"], "take 12 or more"),
         (["colliding_bars:speed=2"], "at most 0.3"),
+        (["colliding_bars", "--material", "hencky"], "closed form is that of linear_elastic alone"),
+        (["sliding_block", "--material", "mohr_coulomb"], "does not keep the stress"),
+        (["self_weight:E=1e300"], "round-off of so stiff a material"),
+        (["colliding_bars", "--offset", "0.5,0.5"], "above -0.5 and below 0.5"),
     ],
 )
 def test_what_cannot_be_is_one_line(
@@ -224,6 +284,32 @@ def test_the_command_judges_and_its_control_fails(
         assert ended.value.code == code == document["exit_code"]
 
 
+@pytest.mark.parametrize(
+    ("found", "says"),
+    [
+        ((2.0, 1.0, 2.0), "The failing control failed, as it must: 2 of 3 refused."),
+        ((1.0, 1.0), "ALARM: a control that must fail passed"),
+        ((1.0, np.nan), "is undecided, or ended in an error"),
+    ],
+)
+def test_a_control_that_passes_is_the_alarm(found: tuple[float, ...], says: str) -> None:
+    run = Run(control=True)
+    some = tuple(Check(case.part(run), "a", one, 1.0, "absolute", "", 0.1) for one in found)
+    record: Any = SimpleNamespace(study=SimpleNamespace(runs=[run]), findings=(), analysis=SimpleNamespace(checks=some))
+    assert says in control(record)
+    record.study.runs = [Run()]
+    assert control(record) == ""
+
+
+def test_a_label_leaves_out_what_goes_with_the_problem(tmp_path: Path) -> None:
+    for materials, told in (((), "CPDI, 4 per cell, problem self_weight"), (("hencky", "neo_hookean"), "material")):
+        more = {"material": materials} if materials else {"problem": ("self_weight", "cell_crossing")}
+        study = build(Asked("benchmark", {"problem": ("self_weight",), "method": ("cpdi",), **more}, quick=True), "")
+        record = Record(Store(tmp_path, "benchmark"), study, {}, False)
+        assert told in record.label(study.runs[0])
+        assert ("material" in record.label(study.runs[0])) is bool(materials)
+
+
 def test_a_page_states_each_problem(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sys.argv", ["verify", "benchmark", "cell_crossing", "--page", "--out", str(tmp_path)])
     with pytest.raises(SystemExit) as ended:
@@ -237,11 +323,7 @@ def test_a_page_states_each_problem(tmp_path: Path, monkeypatch: pytest.MonkeyPa
 
 def test_a_problem_of_ones_own_is_a_file(tmp_path: Path) -> None:
     own = tmp_path / "short_column.py"
-    own.write_text(
-        '"""Short column: that of the benchmarks, lower."""\nfrom dataclasses import dataclass\n'
-        "from mpm_verify.cases.benchmark.problems.self_weight import SelfWeight\n\n\n"
-        "@dataclass(frozen=True)\nclass ShortColumn(SelfWeight):\n    H: float = 5.0\n"
-    )
+    own.write_text(SHORT)
     run = Run(**canonical({"problem": str(own), "cells": 4}))
     found = execute(run)[0]
     assert found.values["cell_stress"] < 1e-8 * 80 * 9.81 * 5
@@ -265,7 +347,8 @@ def test_every_problem_is_exported(
     assert area == pytest.approx(table["V0"], rel=1e-12)
     assert case["known"]
     stated = Run(**canonical({"problem": problem, "cells": int(cells)}))
-    told = [asdict(held) for held in stated.stated.held(stated)]
+    told = [{key: asdict(held)[key] for key in case["known"][0]} for held in stated.stated.held(stated)]
+    assert set(case["known"][0]) >= {"name", "expected", "way", "within", "of", "least", "source"}
     assert case["known"] == told  # each of them, two bounds of one number too
     readme = (tmp_path / "README.md").read_text()
     assert sum(f"| {one['name']} |" in line for line in readme.splitlines() for one in told) >= len(told)
@@ -274,6 +357,17 @@ def test_every_problem_is_exported(
     assert float(flat["dx"]) == case["dx"]
     with pytest.raises(ValueError, match="holds a benchmark, which has no body-force sources to check"):
         read(tmp_path)
+
+
+def test_a_problem_of_ones_own_is_exported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    own = tmp_path / "short_column.py"
+    own.write_text(SHORT)
+    monkeypatch.setattr("sys.argv", ["verify", "export", str(own), "--cells", "4", "--to", str(tmp_path / "case")])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    table = np.genfromtxt(tmp_path / "case" / "particles.csv", delimiter=",", names=True)
+    assert ended.value.code == 0
+    assert table["V0"].sum() == pytest.approx(5.0 * 1.25)
 
 
 def test_an_exported_column_says_where_it_rests() -> None:

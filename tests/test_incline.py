@@ -110,6 +110,23 @@ def test_what_is_held_of_a_cylinder_is_what_was_measured_of_it() -> None:
     assert [name for name, _ in found[0]] == ["gap", "gap", "slip", "slip"]
 
 
+@pytest.mark.parametrize(
+    ("problem", "judged"),
+    [
+        ("sliding_block", True), ("sliding_block:mu=0.2", True), ("sliding_block:mu=0.6", True),
+        ("sliding_block:mu=0.4", False), ("sliding_block:mu=0.47", False), ("sliding_block:E=1e5", False),
+        ("rolling_cylinder", True), ("rolling_cylinder:mu=0.1", True), ("rolling_cylinder:mu=0.15", False),
+        ("rolling_cylinder:theta=45,mu=0.9", False), ("rolling_cylinder:E=1e4", False),
+    ],
+)  # fmt: skip
+def test_bands_are_held_where_they_were_measured(problem: str, judged: bool) -> None:
+    """Friction is held to round-off everywhere."""
+    one, soft = made(problem, 8), made(problem, 8, material="hypoelastic:E=1e6")
+    assert {held.name for held in one.stated.held(one) if not held.unjudged} >= {"excess_friction"}
+    assert all(not held.unjudged for held in one.stated.held(one)) is judged
+    assert any(held.unjudged for held in soft.stated.held(soft))
+
+
 def test_what_is_no_incline() -> None:
     for run, said in (
         (made("sliding_block:theta=70", 4), "theta must be above 0"),

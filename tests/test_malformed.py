@@ -159,7 +159,7 @@ NPZ: dict[str, dict[str, object]] = {
     "no ids": {"x": X},
     "transposed": {"x": X.T, "id": np.arange(len(X))},
     "three axes": {"x": np.zeros((len(X), 2, 2)), "id": np.arange(len(X))},
-    "F of five": {"x": X, "F": np.zeros((len(X), 5)), "id": np.arange(len(X))},
+    "F of six": {"x": X, "F": np.zeros((len(X), 6)), "id": np.arange(len(X))},
 }
 
 

@@ -87,6 +87,12 @@ def test_what_is_held_follows_the_soil_and_what_locks() -> None:
         run("rankine:q=1e6", 4, material=COHESIVE.replace("30", "20")))}  # fmt: skip
     assert held["Kp"].expected == pytest.approx(2.0396, abs=1e-4)
     assert held["Kp"].expected * held["Ka"].expected == pytest.approx(1.0)
+    unjudged = {
+        one: {known.unjudged for known in made.stated.held(made) if known.name in ("Kp", "Ka")}
+        for one in ("mohr_coulomb:phi=45", "mohr_coulomb:phi=60", "drucker_prager")
+        for made in [run("rankine", 4, material=one)]
+    }
+    assert list(unjudged.values()) == [{""}, {"not_usual"}, {"not_usual"}]
     cases = [(5, "none", 4), (9, "none", 4), (5, "fbar", 4), (5, "fbar", 1), (9, "none", 1)]
     ways = []
     for cells, smoothing, ppc in cases:

@@ -10,17 +10,16 @@ from dataclasses import dataclass, replace
 from math import nan
 from typing import Any
 
-from mpm_verify.cases.benchmark.problem import Held
+from mpm_verify.cases.benchmark.problem import AT_REST, Held, completed
 from mpm_verify.cases.benchmark.run import Result, Run
 from mpm_verify.cases.harness.build import Asked
-from mpm_verify.cases.harness.checks import Check
+from mpm_verify.cases.harness.checks import Check, Unjudged
 from mpm_verify.cases.harness.refinement import Series, collect
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.cases.harness.study import Study
 from mpm_verify.cases.judging.records import Expectation
 from mpm_verify.cases.judging.richardson import extrapolate
 from mpm_verify.solver.plugins import (
-    MATERIALS,
     METHODS,
     PROBLEMS,
     SMOOTHINGS,
@@ -28,8 +27,6 @@ from mpm_verify.solver.plugins import (
     available,
     create,
     label,
-    parameters_of,
-    split,
 )
 from mpm_verify.solver.plugins import canonical as canonical_name
 
@@ -79,15 +76,6 @@ def canonical(values: dict[str, Any]) -> dict[str, Any]:
     return values
 
 
-def completed(material: str, constants: Mapping[str, float]) -> str:
-    """Material with the constants of the problem, but for those that it is given itself."""
-    name, rest = split(material)
-    given = [item.partition("=")[0] for item in rest.split(",")]
-    takes = parameters_of(create(MATERIALS, material))
-    more = [f"{key}={value!r}" for key, value in constants.items() if key in takes and key not in given]
-    return canonical_name(MATERIALS, ":".join(filter(None, [name, ",".join(filter(None, [rest, *more]))])))
-
-
 def check(runs: Sequence[Run]) -> None:
     """Raise ValueError with one line for what a problem cannot have."""
     for run in runs:
@@ -119,31 +107,42 @@ def examine(study: Study[Run], results: Mapping[str, Result], store: Store) -> B
     )
 
 
+def part(run: Run) -> str:
+    """Group of the checks of a refinement, such as `self_weight, cpdi`."""
+    smoothed = "" if run.smoothing == Run.smoothing else f" {label(run.smoothing)}"
+    return f"{label(run.problem)}, {label(run.method)}{smoothed}" + ", failing control" * run.control
+
+
 def checks(held: Held, series: Series, results: Mapping[str, Result]) -> list[Check]:
     """Checks of one number of a refinement."""
-    first = series.first
-    smoothed = "" if first.smoothing == Run.smoothing else f" {label(first.smoothing)}"
-    group = f"{label(first.problem)}, {label(first.method)}{smoothed}" + ", failing control" * first.control
+    group = part(series.first)
     done = [(run, results[run.digest]) for run in series.runs if run.digest in results and run.cells >= held.least]
     if held.least and len(done) < LEVELS:
         return []
 
-    def made(name: str, found: float, result: Result | None = None) -> Check:
+    def made(name: str, found: float, result: Result | None = None, unjudged: Unjudged = "") -> Check:
         failure = result.failure if result else None
-        return Check(group, name, found, held.expected, held.way, held.source, held.within, failure)
+        why = held.unjudged or unjudged or moving(held, [result] if result else [])
+        return Check(group, name, found, held.expected, held.way, held.source, held.within, failure, why)
 
     if held.of == "each":
         return [made(f"{held.name}, {run.cells} cells", value(held, one), one) for run, one in done]
     if held.of == "finest" or len(done) < LEVELS:
-        return [made(f"{held.name}, {run.cells} cells", value(held, one), one) for run, one in done[-1:]]
+        few: Unjudged = "few_grids" if held.of == "limit" else ""
+        return [made(f"{held.name}, {run.cells} cells", value(held, one), one, few) for run, one in done[-1:]]
     failed = next((one for _, one in done[: -LEVELS - 1 : -1] if one.failure), None)
     if failed:
         return [made(held.name, nan, failed)]
     h, f = zip(*((1 / run.cells, value(held, one)) for run, one in done[: -LEVELS - 1 : -1]), strict=True)
-    limit = extrapolate(h, f)
+    limit, why = extrapolate(h, f), moving(held, [one for _, one in done[-LEVELS:]])
     if limit.kind in ("converges", "equal"):
-        return [made(f"{held.name}, limit", limit.limit)]
-    return [made(f"{held.name}, {done[-1][0].cells} cells", limit.finest)]
+        return [made(f"{held.name}, limit", limit.limit, unjudged=why)]
+    return [made(f"{held.name}, {done[-1][0].cells} cells", limit.finest, unjudged=why)]
+
+
+def moving(held: Held, results: Sequence[Result]) -> Unjudged:
+    """Mark of a number at rest where one of the runs that it is made of ended before."""
+    return "not_at_rest" if held.rests and any(one.values.get(AT_REST) == 0 for one in results) else ""
 
 
 def value(held: Held, result: Result) -> float:

@@ -41,7 +41,7 @@ class EdgeRecord:
 
 @dataclass(frozen=True)
 class PushedRecord:
-    """Nodes with a given velocity along an axis, that of a travel; they stay where they are.
+    """Nodes with a given velocity on an axis, that of a travel; they stay where they are.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ class PushedRecord:
 
 
 def edges(model: Model) -> dict[str, EdgeRecord]:
-    """What each side of the grid holds and what pulls at it, by its name. Raises ValueError for what no record has."""
+    """Sides of the grid by name: what each holds, and what pulls at it. Raises ValueError for what no record has."""
     return {side: EdgeRecord(*held(model, number), traction(model, number)) for number, side in enumerate(SIDES)}
 
 

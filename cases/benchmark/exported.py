@@ -44,7 +44,7 @@ class BenchmarkRecord:
     edges
         What each side of the grid holds, and what pulls at it.
     pushed
-        Nodes whose velocity along an axis is given.
+        Nodes whose velocity on an axis is given.
     gravity
         Body force per mass at the end, (x, y).
     damping

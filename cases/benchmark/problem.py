@@ -15,14 +15,17 @@ from dataclasses import dataclass, field, fields
 from typing import ClassVar, Literal
 
 from mpm_verify.cases.benchmark.run import Run
-from mpm_verify.cases.harness.checks import Way
+from mpm_verify.cases.harness.checks import Unjudged, Way
 from mpm_verify.cases.judging.records import Expectation
 from mpm_verify.solver.model import Load, Model, Observer
+from mpm_verify.solver.plugins import MATERIALS, create, parameters_of, split
+from mpm_verify.solver.plugins import canonical as canonical_name
 from mpm_verify.solver.state import Floats, Particles
 
 Pair = tuple[str, str]  # quantity and norm
 Errors = dict[str, dict[str, float]]
 CONSTANTS = ("E", "nu", "rho0")  # parameters of a problem that are its material's too
+AT_REST = "at_rest"  # value of a run: 1, or 0 of one that ended before
 FIGURE, EXACT = "curves/", "exact"  # array curves/FIGURE/CURVE (2,n), x and y; EXACT is the known answer
 
 
@@ -84,11 +87,15 @@ class Held:
     expected, way, within, source
         See cases/harness/checks.py: Check.
     of
-        ``limit``: the Richardson limit of the finest three levels, or the finest value where there are fewer or they
-        do not approach one; ``finest``: the value on the finest cells; ``each``: that of every run.
+        ``limit``: the Richardson limit of the finest three levels, or the finest value where they do not approach one;
+        with fewer levels nothing is judged; ``finest``: the value on the finest cells; ``each``: that of every run.
     least
         Cells from which on the values come to their limit by one order: coarser grids are left out of it, and with
         fewer than three of the others nothing is held. 0 where coarse grids are as near as fine ones.
+    unjudged
+        Why the number is shown and not judged, such as parameters that its band was not measured at; usual is nothing.
+    rests
+        Whether it is that of a body at rest, so that nothing is judged of a run whose value AT_REST is 0.
     """
 
     name: str
@@ -98,6 +105,8 @@ class Held:
     within: float = 0.0
     of: Literal["limit", "finest", "each"] = "limit"
     least: int = 0
+    unjudged: Unjudged = ""
+    rests: bool = False
 
 
 @dataclass(frozen=True)
@@ -145,6 +154,12 @@ class Problem:
         """Parameters that are those of its material."""
         return {item.name: getattr(self, item.name) for item in fields(self) if item.name in CONSTANTS}
 
+    def band(self, run: Run, *free: str) -> Unjudged:
+        """Mark of a number with a band measured at the usual parameters, where others than `free` are not these."""
+        same = all(getattr(self, one.name) == one.default for one in fields(self) if one.name not in free)
+        known = create(MATERIALS, run.material) == create(MATERIALS, completed(self.material, self.constants))
+        return "" if same and known else "not_usual"
+
     def check(self, run: Run) -> None:
         """Raise ValueError with one line, which says what to type instead, for a run that cannot be."""
 
@@ -175,3 +190,12 @@ class Problem:
     def updates(self, run: Run) -> float:
         """Particle updates, about."""
         return 40.0 * run.cells * self.particles(run)
+
+
+def completed(material: str, constants: Mapping[str, float]) -> str:
+    """Material with the constants of the problem, but for those that it is given itself."""
+    name, rest = split(material)
+    given = [item.partition("=")[0] for item in rest.split(",")]
+    takes = parameters_of(create(MATERIALS, material))
+    more = [f"{key}={value!r}" for key, value in constants.items() if key in takes and key not in given]
+    return canonical_name(MATERIALS, ":".join(filter(None, [name, ",".join(filter(None, [rest, *more]))])))

@@ -31,6 +31,8 @@ class Run(RunRecord):
             )
         if self.ppc < 1 or isqrt(self.ppc) ** 2 != self.ppc:
             raise ValueError(f"{self.ppc} particles per cell is not a square number; choose from 1, 4, 9, 16, ...")
+        if not all(-0.5 < one < 0.5 for one in self.offset):
+            raise ValueError(f"offset = {self.offset} cannot be run; choose two above -0.5 and below 0.5, as 0.25,0.25")
         if not 1e-3 <= self.courant <= 1:
             raise ValueError(f"courant = {self.courant} cannot be run; choose 0.001 to 1, 0.4 is usual")
 

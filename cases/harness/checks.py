@@ -9,6 +9,7 @@ from mpm_verify.cases.judging.records import Outcome, worst
 from mpm_verify.solver.failure import Failure
 from mpm_verify.solver.state import Floats
 
+Unjudged = Literal["", "few_grids", "not_usual", "not_at_rest"]  # why nothing can be held; words: sentences/unjudged
 Way = Literal["relative", "absolute", "at_least", "at_most"]
 Curves = dict[str, dict[str, Floats]]
 
@@ -18,8 +19,8 @@ class Check:
     """A number `found` and what it is held against.
 
     `way`: found within `within` of `expected`, as a fraction of it or absolutely, or a bound that `expected` is. A
-    number that is not finite is an ERROR. `source` says where the expectation comes from, `group` which part it
-    belongs to.
+    number that is not finite is an ERROR, one that is `unjudged` INCONCLUSIVE. `source` says where the expectation
+    comes from, `group` which part it belongs to.
     """
 
     group: str
@@ -30,6 +31,7 @@ class Check:
     source: str
     within: float = 0.0
     failure: Failure | None = None  # what ended the run that has no number to hold
+    unjudged: Unjudged = ""
 
     @property
     def miss(self) -> float:
@@ -39,9 +41,11 @@ class Check:
 
     @property
     def outcome(self) -> Outcome:
-        """Outcome: PASS, FAIL, or ERROR where the value is not a number."""
+        """Outcome: PASS, FAIL, ERROR where the value is not a number, or INCONCLUSIVE where nothing can be held."""
         if not isfinite(self.found):
             return Outcome.ERROR
+        if self.unjudged:
+            return Outcome.INCONCLUSIVE
         if self.way == "at_least":
             return Outcome.PASS if self.found >= self.expected else Outcome.FAIL
         if self.way == "at_most":

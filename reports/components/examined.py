@@ -13,7 +13,7 @@ from mpm_verify.reports.components.film import Film
 from mpm_verify.reports.components.logs import Log
 from mpm_verify.reports.components.page import Add, Image, adder, template
 from mpm_verify.reports.components.show import Table
-from mpm_verify.reports.sentences import failures
+from mpm_verify.reports.sentences import failures, unjudged
 from mpm_verify.reports.sentences.remarks import lead, parameters
 
 WAYS = {"relative": "± {} of it", "absolute": "± {}", "at_least": "or more", "at_most": "or less"}
@@ -96,7 +96,7 @@ def row(check: Check) -> tuple[str, ...]:
         digits(check.expected),
         allowed,
         miss,
-        check.source,
+        unjudged.source(check),
     )
 
 

@@ -5,6 +5,7 @@ octave/ the force and the exact fields in other languages, selfcheck.csv and sel
 with, each with its tolerance, and README.md says all of it in words.
 """
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -110,11 +111,14 @@ def read(folder: Path) -> CaseRecord:
     if BENCHMARK.encode() in text:
         raise ValueError(f"{folder} holds a benchmark, which has no body-force sources to check")
     try:
-        return TypeAdapter(CaseRecord).validate_json(text)
+        found = TypeAdapter(CaseRecord).validate_json(text)
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(map(str, first["loc"])) or "all of it"
         raise ValueError(f"{folder / CASE} is damaged: {where}: {first['msg']}; export the case again") from None
+    if json.loads(text)["dimension"] is True:  # which counts as 1
+        raise ValueError(f"{folder / CASE} is damaged: dimension: true is not a number; export the case again")
+    return found
 
 
 def table_of(folder: Path, record: CaseRecord) -> Table:

@@ -4,6 +4,7 @@ from mpm_verify.reports import words
 from mpm_verify.reports.components.logs import failed
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences import commands, controls, own_solver, verdicts
+from mpm_verify.reports.sentences.benchmark import control
 from mpm_verify.reports.sentences.headline import badge, headline
 
 MARKS = {"PASS": "✅", "FAIL": "❌", "INCONCLUSIVE": "❔", "ERROR": "⚠️"}
@@ -27,6 +28,8 @@ def markdown(record: Record) -> str:
                      words.order(v.observed), verdicts.registered(plan.expectation),
                      commands.reason(study, f))  # fmt: skip
             lines.append(f"| {' | '.join(map(escaped, cells))} |")
+    if spoilt := control(record) if study.case == "benchmark" else "":
+        lines += ["", spoilt]
     if told := controls.sentence(found.controls):
         lines += ["", told]
     lines += [f"- {escaped(hint)}" for hint in own_solver.hints(record.results.values())]

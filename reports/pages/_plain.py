@@ -23,11 +23,12 @@ from mpm_verify.reports.tables import plain
 
 def page(
     record: Record, vtk: bool = False, more: Sequence[Section] = (), last: Section | None = None,
-    first: Sequence[Section] = (),
+    first: Sequence[Section] = (), lead: str = "",
 ) -> Path:  # fmt: skip
     """Write the page of a study, its figures and tables; its path.
 
     Sections `first` stand before the verdicts, `more` before the runs, or `last` in place of these.
+    `lead` stands before what is said of it on top.
 
     Raises StoreError.
     """
@@ -39,7 +40,7 @@ def page(
     )  # fmt: skip
     made = render(
         record.store.folder, examination, lambda _, add: [*first, *sections(record, add), *more, last or runs(record)],
-        outcome=str(found.outcome), said=said(record),
+        outcome=str(found.outcome), said=f"{lead} {said(record)}".strip(),
     )  # fmt: skip
     plain.write(record, record.store.folder / "tables")
     return made

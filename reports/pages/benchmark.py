@@ -12,7 +12,7 @@ from mpm_verify.reports.components.page import Add, adder
 from mpm_verify.reports.figures import benchmark as figures
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.pages import _plain
-from mpm_verify.reports.sentences.benchmark import statement
+from mpm_verify.reports.sentences.benchmark import control, statement
 from mpm_verify.solver.plugins import label
 
 
@@ -22,7 +22,8 @@ def page(record: Record, vtk: bool = False) -> Path:
     folder.mkdir(parents=True, exist_ok=True)
     add = adder(folder)
     named = dict.fromkeys(series.first.problem for series in record.series)
-    return _plain.page(record, first=[section(record, add, name, number) for number, name in enumerate(named)])
+    return _plain.page(record, first=[section(record, add, name, number) for number, name in enumerate(named)],
+                       lead=control(record))  # fmt: skip
 
 
 def section(record: Record, add: Add, name: str, number: int) -> Section:

@@ -22,6 +22,8 @@ def reason(study: Study[Any], found: Finding) -> str:
     """Reason of a verdict, and the option that asks for the run that would decide where nothing does."""
     if found.plan.run.given:
         return ": ".join(filter(None, [verdicts.said(found.verdict.reason), decides(study, found)]))
+    if found.plan.expectation is None:
+        return verdicts.shown(found.verdict.reason)
     if no_step_decides(found):
         return verdicts.said(found.verdict.reason)
     return verdicts.reason(found.verdict.reason, courants(study, found.plan))

@@ -52,6 +52,16 @@ def said(r: Reason) -> str:
     return SAID[r.code](r)
 
 
+def shown(r: Reason) -> str:
+    """Phrase on an error of which nothing is registered: what it did, and no word on what it should."""
+    if r.code in (ReasonCode.CONVERGES, ReasonCode.NEITHER):
+        alone = r.numbers["h_0"] == r.numbers["h_1"]
+        return f"nothing is registered of it: {'one level finished' if alone else f'the error went {_path(r)}'}"
+    if r.code in (ReasonCode.DIVERGES, ReasonCode.STALLS):
+        return f"nothing is registered of it: {', and '.join(_seen(r))}"
+    return said(r).replace("does not converge, as expected: ", "nothing is registered of it: ")
+
+
 def advice(wanted: Wanted, courants: tuple[float, ...] = ()) -> str:
     """Option that asks for the run that would decide; `courants` are those of the study."""
     option = options(wanted, courants)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from mpm_verify.cases.mms.run import PRECISIONS
-from mpm_verify.solver.plugins import MATERIALS, PROBLEMS, SOLUTIONS, available, split
+from mpm_verify.solver.plugins import MATERIALS, PROBLEMS, SOLUTIONS, available, is_file, load, split
 from mpm_verify.verify.choices import choices, completing, completion
 from mpm_verify.verify.terminal.output import printing
 
@@ -66,7 +66,7 @@ def export(
     """Write a folder with all that another solver needs to be verified with a manufactured solution."""
     from mpm_verify.verify.run import check_count, usage
 
-    if split(solution)[0] in available(PROBLEMS):
+    if states_problem(solution):
         benchmark(solution, to, material, cells, ppc, courant, others=(frames, precision, dim) != (16, "double", None))
         return
     with usage():
@@ -79,6 +79,18 @@ def export(
     with printing():
         typer.echo(f"{to}: {len(written)} files, {case.record.particles} particles, {case.record.steps} steps")
         typer.echo(f"read {to / 'README.md'}; check the sources with: verify check-force {to}")
+
+
+def states_problem(specification: str) -> bool:
+    """Whether this is a benchmark, or a file with a problem of one's own."""
+    name = split(specification)[0]
+    if not is_file(specification):
+        return name in available(PROBLEMS)
+    try:
+        load(PROBLEMS, name)
+    except ValueError:
+        return False
+    return True
 
 
 def benchmark(

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from mpm_verify.reports.frames import Record
+from mpm_verify.reports.sentences.benchmark import control
 from mpm_verify.verify.terminal import checks, table
 
 
@@ -10,4 +11,4 @@ def show(record: Record, page: Path | None) -> None:
     """Print verdicts and checks, as far as there are some."""
     if record.study.plans:
         table.show(record, None)
-    checks.show(record, page, titled=not record.study.plans)
+    checks.show(record, page, control(record), titled=not record.study.plans)

@@ -8,7 +8,7 @@ from mpm_verify.cases.harness.checks import Check
 from mpm_verify.reports import words
 from mpm_verify.reports.components.logs import failed
 from mpm_verify.reports.frames import Record
-from mpm_verify.reports.sentences import failures
+from mpm_verify.reports.sentences import failures, unjudged
 
 
 def show(record: Record, page: Path | None, lead: str = "", titled: bool = True) -> None:
@@ -58,13 +58,14 @@ def sentence(check: Check) -> str:
         return name
     if not isfinite(check.found):
         return f"{name}: there is no number to hold against {check.expected:.8g}"
-    return f"{name} is {check.found:.8g}, expected {way}{check.expected:.8g}{within}{relative} ({check.source})"
+    known = f"{way}{check.expected:.8g}{within}{relative}"
+    return f"{name} is {check.found:.8g}, expected {known} ({unjudged.source(check)})"
 
 
 def closest(checks: Sequence[Check]) -> str:
     """Check that uses most of what it is allowed, and its numbers; empty where no check allows anything."""
     fractions = {check: used(check) for check in checks}
-    bounded = [check for check in checks if isfinite(fractions[check])]
+    bounded = [check for check in checks if isfinite(fractions[check]) and not check.unjudged]
     if not bounded:
         return ""
     most = max(bounded, key=lambda check: fractions[check])

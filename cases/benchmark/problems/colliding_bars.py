@@ -81,7 +81,12 @@ class CollidingBars(Problem):
     speed: float = 0.1  # of each bar, over that of the wave
 
     def check(self, run: Run) -> None:
-        """Raise ValueError for bars that are too fast, or whose method keeps them apart."""
+        """Raise ValueError for bars that are too fast, of another material, or whose method keeps them apart."""
+        if split(run.material)[0] != self.material:
+            raise ValueError(
+                f"colliding_bars: the closed form is that of {self.material} alone, not of {run.material}; "
+                "leave --material out"
+            )
         if not 0 < self.speed <= 0.3:
             raise ValueError(f"colliding_bars: speed = {self.speed:g} must be above 0 and at most 0.3")
         if create(METHODS, run.method).reference:

@@ -35,7 +35,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from mpm_verify.cases.benchmark.balance import cell_stress, rms
-from mpm_verify.cases.benchmark.problem import Drawn, Held, Measured, Pair, Problem, Setup, Watch
+from mpm_verify.cases.benchmark.problem import AT_REST, Drawn, Held, Measured, Pair, Problem, Setup, Watch
 from mpm_verify.cases.benchmark.run import Run
 from mpm_verify.cases.benchmark.uniaxial import stiffness, stretch, stretches
 from mpm_verify.cases.judging.records import Expectation
@@ -55,6 +55,7 @@ DEVIATIONS = {  # of the position; see above
 }
 RAMP, MOST = 8.0, 80.0  # slowest periods in which gravity rises, and after which a run ends though it is not at rest
 REST = 1e-11  # largest force of a node at rest, over the whole weight
+STIFFEST = 1e6  # stiffness over the weight per area, whose round-off of the stretch is 2e-10 of the weight
 SAMPLES = 33  # heights at which the fastest wave is looked for
 HEAVY = 1.02  # gravity of the failing control, over that of the problem
 
@@ -92,7 +93,11 @@ class SelfWeight(Problem):
         material = create(MATERIALS, run.material)
         if material.energy is None:
             raise ValueError(f"self_weight needs a material with an energy, which {run.material} has not; take hencky")
-        stretch(material, self.stress(material, 0.0))
+        weight = -float(self.stress(material, 0.0))
+        stretch(material, -weight)
+        if not stiffness(material, 1.0) <= STIFFEST * weight:
+            most = f"{1e-3 * STIFFEST * weight:g}"
+            raise ValueError(f"self_weight: round-off of so stiff a material is above what is held; take E = {most}")
 
     def stress(self, material: Any, Y: Any) -> Any:
         """Vertical stress at heights Y at reference."""
@@ -143,10 +148,10 @@ class SelfWeight(Problem):
         base, height = stretch(material, self.stress(material, 0.0)), float(self.rest(material, np.array([self.H]))[0])
         weight = material.rho0 * self.g * self.H
         return (
-            Held("height", height, "relative", "integral of the stretch", 1e-3),
-            Held("base_stretch", base, "relative", "stretch under the whole weight", 1e-2),
-            Held("base_force", 1.0, "absolute", "weight over the area", 1e-8, "each"),
-            Held("cell_stress", 1e-8 * weight, "at_most", "balance of each cell", of="each"),
+            Held("height", height, "relative", "integral of the stretch", 1e-3, rests=True),
+            Held("base_stretch", base, "relative", "stretch under the whole weight", 1e-2, rests=True),
+            Held("base_force", 1.0, "absolute", "weight over the area", 1e-8, "each", rests=True),
+            Held("cell_stress", 1e-8 * weight, "at_most", "balance of each cell", of="each", rests=True),
         )
 
     def answers(self, run: Run, X: Floats) -> dict[str, Floats]:
@@ -197,6 +202,7 @@ class AtRest(Watch):
             "base_force": float(self.floor.force[1]) / (weight * model.grid.dx),
             "cell_stress": float(np.abs(cells).max()),
             "unbalanced": self.unbalanced,
+            AT_REST: float(self.done),
         }
         fine = np.linspace(0.0, problem.H, 101)
         curves = {

@@ -11,7 +11,10 @@ the block a tangential impulse of at most mu times the normal one, which is held
 Registered: the error of the travel does not fall with the cells. It is that of an elastic block: waves from its ends,
 which bear the shear of no layer, let part of the base stick at first, where less than the friction of sliding acts. So
 the travel is 0.6 to 0.8 % too long with each method, and a third of that with ten times E. A block that sticks shears
-by 0.1 % of the travel that it would have without friction, and shivers. It starts on the floor: no gap is to be closed.
+by 0.1 % of the travel that it would have without friction, and shivers. It is less with less friction, and grows as mu
+comes near tan(theta), where little of the travel is left, and with softer, larger blocks and shorter times. So travel
+is judged for mu up to 0.3 and from 0.6 on, all else being as usual, and only shown elsewhere. The block starts on the
+floor: no gap is to be closed.
 Failing control: friction 10 % too high; of a block that sticks 30 % too low.
 """
 
@@ -26,8 +29,9 @@ from mpm_verify.cases.benchmark.problem import Drawn, Held, Measured, Problem, S
 from mpm_verify.cases.benchmark.run import Run
 from mpm_verify.solver.layout import rectangle
 from mpm_verify.solver.model import Model
-from mpm_verify.solver.plugins import METHODS, create
+from mpm_verify.solver.plugins import METHODS, create, split
 
+SLIDES, STICKS = 0.3, 0.6  # friction up to which the error of sliding was measured, and from which that of sticking
 RUBS, SLIPS = 1.1, 0.7  # friction of the failing control, of a block that slides and of one that sticks
 LONG = 2.0  # length over height: pressed all along its base
 
@@ -73,7 +77,12 @@ class SlidingBlock(Problem):
         return 0.5 * self.T**2 * float(self.plane.sliding if self.slides else self.plane.gravity[0])
 
     def check(self, run: Run) -> None:
-        """Raise ValueError for a block that tips over, or whose method knows no floor."""
+        """Raise ValueError for a block that tips over, bears no stress at first, or whose method knows no floor."""
+        if split(run.material)[0] != self.material:
+            raise ValueError(
+                f"sliding_block: a block of {run.material} does not keep the stress that it starts with; "
+                "leave --material out"
+            )
         if not 0 < self.theta < 60 or not min(self.g, self.H, self.T, self.mu) > 0:
             raise ValueError("sliding_block: theta must be above 0 and below 60; mu, g, H and T above zero")
         if min(self.mu, self.plane.slope) > LONG / 3:
@@ -98,9 +107,11 @@ class SlidingBlock(Problem):
     def held(self, run: Run) -> tuple[Held, ...]:
         """Travel, and friction to round-off."""
         friction = Held("excess_friction", 1e-9, "at_most", "mu times the normal impulse", of="each")
+        known = self.mu <= SLIDES if self.slides else self.mu >= STICKS
+        why = self.band(run, "mu") if known else "not_usual"
         if self.slides:
-            return Held("travel", 1.0, "relative", "(sin - mu cos) g t^2 / 2", 0.015, "each"), friction
-        return Held("travel", 0.005, "at_most", "it sticks", of="each"), friction
+            return Held("travel", 1.0, "relative", "(sin - mu cos) g t^2 / 2", 0.015, "each", unjudged=why), friction
+        return Held("travel", 0.005, "at_most", "it sticks", of="each", unjudged=why), friction
 
     def particles(self, run: Run) -> int:
         """Number of particles."""
