@@ -63,7 +63,7 @@ SAMPLES: dict[str, dict[str, str]] = {  # of each case two values of each field,
     },
     "benchmark": {
         "problem": "colliding_bars,cell_crossing", "method": "cpdi,gimp",
-        "material": "linear_elastic:E=1,nu=0,neo_hookean:E=1,nu=0", "cells": "16,32", "ppc": "4,9",
+        "material": "linear_elastic:E=1,nu=0,linear_elastic:E=2,nu=0", "cells": "16,32", "ppc": "4,9",
         "courant": "0.4,0.2", "transfer": "flip,apic", "smoothing": "none,volumetric", "offset": "0.25,-0.125",
         "control": "no,yes",
     },

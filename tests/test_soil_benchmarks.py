@@ -130,7 +130,7 @@ def test_the_limit_of_a_strip_that_locks_is_of_the_finest_grids_that_resolve_it(
 def test_a_coarse_grid_of_wide_functions_is_not_held(method: str) -> None:
     """Their strips are narrower by a part of a cell, 7.7 % on five cells with bspline2; the limit is that of all."""
     assert held_of_a_study("footing", {5: 0.92}, method=method, smoothing="fbar") == []
-    assert held_of_a_study("footing", {5: 0.92}, smoothing="fbar") == [("bearing, 5 cells", "FAIL")]
+    assert held_of_a_study("footing", {5: 0.92}, smoothing="fbar") == [("bearing, 5 cells", "INCONCLUSIVE")]
     falling = {9: 0.9607, 13: 0.9740, 17: 0.9805}
     assert held_of_a_study("footing", falling, method=method, smoothing="fbar") == [("bearing, limit", "PASS")]
 
