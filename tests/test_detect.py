@@ -193,7 +193,7 @@ def test_few_defects_are_told_one_by_one(count: int, monkeypatch: pytest.MonkeyP
 @pytest.mark.slow
 def test_a_campaign_that_was_killed_goes_on_and_says_the_same(tmp_path: Path) -> None:
     """What was stored before the kill stays as it is, and the outcomes are those of a campaign that ran through."""
-    names = ("none", "exit-code", "two-levels", "placebo-logs")
+    names = ("none", "exit-code", "rise-not-seen", "placebo-logs")
     command = [sys.executable, "-m", "mpm_verify", "detect", "--defect", ",".join(names), "--checks", "quick"]
 
     def outcomes(folder: Path) -> dict[str, Any]:
@@ -216,5 +216,5 @@ def test_a_campaign_that_was_killed_goes_on_and_says_the_same(tmp_path: Path) ->
     assert {file: file.stat().st_mtime_ns for file in first} == written
     assert outcomes(killed) == outcomes(through)
     assert {name: told[0]["rule"] for name, told in outcomes(through).items()} == {
-        "none": "PASS", "exit-code": "FAIL", "two-levels": "FAIL", "placebo-logs": "PASS",
+        "none": "PASS", "exit-code": "FAIL", "rise-not-seen": "FAIL", "placebo-logs": "PASS",
     }  # fmt: skip
