@@ -4,14 +4,12 @@ import json
 from dataclasses import asdict
 from pathlib import Path
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
 from mpm_verify.cases.benchmark.exported import FORMAT, Exported
 from mpm_verify.cases.benchmark.problem import Problem
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.mms.export.files import CASE, FLAT, PARTICLES, csv
 from mpm_verify.mms.export.record import flat
-from mpm_verify.reports.export.case_folder import README, TEMPLATES
+from mpm_verify.reports.export.folder import README, rendered, usable
 from mpm_verify.reports.sentences.benchmark import statement
 
 KNOWN = "known.csv"
@@ -39,7 +37,7 @@ def write(folder: Path, case: Exported, problem: Problem) -> list[Path]:
     ValueError
         If something else is there.
     """
-    usable(folder)
+    usable(folder, benchmark_in, "benchmark")
     folder.mkdir(parents=True, exist_ok=True)
     texts = {
         FLAT: "".join(f"{name} {value}\n" for name, value in flat(case.record)),
@@ -53,22 +51,17 @@ def write(folder: Path, case: Exported, problem: Problem) -> list[Path]:
     return [folder / name for name in texts]
 
 
-def usable(folder: Path) -> None:
-    """Raise ValueError unless a benchmark can be written there."""
-    if not folder.exists() or (folder.is_dir() and not any(folder.iterdir())):
-        return
+def benchmark_in(folder: Path) -> None:
+    """Raise ValueError for a folder without a benchmark."""
     try:
         there = json.loads((folder / CASE).read_text(encoding="utf-8")).get("format")
     except (OSError, ValueError, AttributeError):
         there = None
     if there != FORMAT:
-        raise ValueError(f"{folder} holds something that is not an exported benchmark; name a new folder")
+        raise ValueError(f"{folder} holds no benchmark")
 
 
 def words(case: Exported, problem: Problem) -> str:
     """Text of README.md."""
-    environment = Environment(loader=FileSystemLoader(TEMPLATES), undefined=StrictUndefined, keep_trailing_newline=True)
-    environment.trim_blocks = environment.lstrip_blocks = True
-    return environment.get_template("benchmark_folder.md.j2").render(
-        case=case.record, statement=statement(problem), columns=list(case.known), ways=WAYS, ofs=OFS
-    )
+    columns, told = list(case.known), statement(problem)
+    return rendered("benchmark_folder.md.j2", case=case.record, statement=told, columns=columns, ways=WAYS, ofs=OFS)

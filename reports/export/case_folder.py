@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from pydantic import TypeAdapter, ValidationError
 
 from mpm_verify.cases.benchmark.exported import FORMAT as BENCHMARK
@@ -20,11 +19,12 @@ from mpm_verify.mms.export.case import Exported
 from mpm_verify.mms.export.expected import Table, needed, table
 from mpm_verify.mms.export.files import CASE, FIELDS, FORCE, files
 from mpm_verify.mms.export.record import CaseRecord
+from mpm_verify.reports.export import folder as folders
+from mpm_verify.reports.export.folder import README, rendered
 from mpm_verify.reports.export.vtk import particles_file
 from mpm_verify.solver.state import Floats
 
-TEMPLATES = Path(__file__).absolute().parent.parent / "templates"
-VTU, README = "particles.vtu", "README.md"
+VTU = "particles.vtu"
 
 
 def schema() -> dict[str, Any]:
@@ -37,17 +37,7 @@ def schema() -> dict[str, Any]:
 
 def usable(folder: Path) -> None:
     """Raise ValueError unless a case can be written there: nothing is there yet, or a folder that holds a case."""
-    if folder.is_symlink() and not folder.exists():
-        raise ValueError(f"{folder} is a link that leads nowhere; name another folder")
-    if folder.exists() and not folder.is_dir():
-        raise ValueError(f"{folder} is a file; name a folder")
-    if folder.exists() and any(folder.iterdir()):
-        try:
-            read(folder)
-        except ValueError:
-            raise ValueError(
-                f"{folder} holds something that is not an exported case; name a new folder, or an empty one"
-            ) from None
+    folders.usable(folder, read, "case")
 
 
 def write(folder: Path, case: Exported) -> list[Path]:
@@ -84,8 +74,6 @@ def write(folder: Path, case: Exported) -> list[Path]:
 
 def words(record: CaseRecord) -> str:
     """Text of README.md."""
-    environment = Environment(loader=FileSystemLoader(TEMPLATES), undefined=StrictUndefined, keep_trailing_newline=True)
-    environment.trim_blocks = environment.lstrip_blocks = True
     axes = AXES[: record.dimension]
     sides = ("r1x the", "r1x, r1y and r2x, r2y the two", "r1x, r1y, r1z to r3z the three")[record.dimension - 1]
 
@@ -95,9 +83,7 @@ def words(record: CaseRecord) -> str:
     def said(letters: str) -> str:
         return " and ".join(filter(None, [", ".join(letters[:-1]), letters[-1]]))
 
-    return environment.get_template("case_folder.md.j2").render(
-        case=record, axes=axes, columns=named, said=said, sides=sides
-    )
+    return rendered("case_folder.md.j2", case=record, axes=axes, columns=named, said=said, sides=sides)
 
 
 def read(folder: Path) -> CaseRecord:
