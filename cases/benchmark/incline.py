@@ -2,15 +2,16 @@
 
 from dataclasses import dataclass
 from math import ceil, cos, radians, sin, tan
+from typing import ClassVar
 
 import numpy as np
 
-from mpm_verify.cases.benchmark.problem import EXACT, Measured, Setup, Watch
+from mpm_verify.cases.benchmark.problem import EXACT, Measured, Problem, Watch
 from mpm_verify.cases.benchmark.run import Run
 from mpm_verify.solver.friction import frictional
 from mpm_verify.solver.layout import Layout
 from mpm_verify.solver.model import Model
-from mpm_verify.solver.plugins import MATERIALS, METHODS, SMOOTHINGS, TRANSFERS, create, optional, split
+from mpm_verify.solver.plugins import MATERIALS, METHODS, SMOOTHINGS, TRANSFERS, create, label, optional, split
 from mpm_verify.solver.state import Floats, Grid
 from mpm_verify.solver.step import Scheme
 
@@ -43,8 +44,10 @@ class Incline:
         """Acceleration of what slides, g (sin - mu cos)."""
         return float(self.gravity[0] + self.mu * self.gravity[1])
 
-    def setup(self, run: Run, layout: Layout, dx: float, travel: float, duration: float, friction: float) -> Setup:
-        """Body with a grid for its travel and a floor of some friction, from rest."""
+    def placed(
+        self, run: Run, layout: Layout, dx: float, travel: float, duration: float, friction: float
+    ) -> tuple[Model, int]:
+        """Body with a grid for its travel and a floor of some friction, from rest, and the number of its steps."""
         material, basis = create(MATERIALS, run.material), create(METHODS, run.method)
         low, high = layout.corners.min(axis=(0, 1)), layout.corners.max(axis=(0, 1))
         left = dx * (np.floor(low[0] / dx) - ROOM)
@@ -58,7 +61,44 @@ class Incline:
             Scheme(create(TRANSFERS, run.transfer), STRESS.get(split(run.method)[0], "usl")), None,
             optional(SMOOTHINGS, run.smoothing),
         )  # fmt: skip
-        return Setup(model, steps, Motion(self, model), leave)
+        return model, steps
+
+
+@dataclass(frozen=True)
+class OnIncline(Problem):
+    """Body on an incline; E, nu, rho0 are its material's, `theta` in degrees, g in m/s2.
+
+    Attributes
+    ----------
+    lengths
+        Names of its other parameters, which are above zero.
+    """
+
+    source: ClassVar[str] = "Bardenhagen, Brackbill & Sulsky 2000, doi:10.1016/S0045-7825(99)00338-2"
+    material: ClassVar[str] = "hypoelastic"
+    methods: ClassVar[tuple[str, ...]] = ("cpdi", "gimp", "bspline2", "mpm")
+    lengths: ClassVar[tuple[str, ...]]
+
+    E: float = 1e7
+    nu: float = 0.0
+    rho0: float = 1000.0
+    theta: float = 25.0
+    mu: float = 0.3
+    g: float = 10.0
+
+    @property
+    def plane(self) -> Incline:
+        """Plane, with its friction."""
+        return Incline(self.theta, self.mu, self.g)
+
+    def check(self, run: Run) -> None:
+        """Raise ValueError for what is no incline, or whose method knows no floor."""
+        name, above = label(run.problem), ("mu", "g", *self.lengths)
+        if not 0 < self.theta < 60 or not min(getattr(self, one) for one in above) > 0:
+            told = f"{', '.join(above[:-1])} and {above[-1]}"
+            raise ValueError(f"{name}: theta must be above 0 and below 60; {told} above zero")
+        if create(METHODS, run.method).reference:
+            raise ValueError(f"{name}: nodes of {run.method} move with the body, and are no floor; take cpdi")
 
 
 def leave(particles: object, t: float) -> None:

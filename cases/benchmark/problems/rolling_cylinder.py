@@ -35,12 +35,12 @@ from typing import ClassVar
 
 import numpy as np
 
-from mpm_verify.cases.benchmark.incline import Incline, Motion
-from mpm_verify.cases.benchmark.problem import Drawn, Held, Measured, Problem, Setup
+from mpm_verify.cases.benchmark.incline import Motion, OnIncline, leave
+from mpm_verify.cases.benchmark.problem import Drawn, Held, Measured, Setup
 from mpm_verify.cases.benchmark.run import Run
 from mpm_verify.solver.layout import Layout, per_side
 from mpm_verify.solver.model import Model
-from mpm_verify.solver.plugins import METHODS, create, split
+from mpm_verify.solver.plugins import split
 
 GAPS = {"mpm": 0.2, "bspline2": 0.2}  # least in cells, as measured from COARSE cells on, four to a cell; of others GAP
 GAP, SLIP, COARSE = 0.45, 0.58, 8
@@ -51,37 +51,24 @@ RUBS, SLIPS = 1.1, 0.25  # friction of the failing control, of a cylinder that s
 
 
 @dataclass(frozen=True)
-class RollingCylinder(Problem):
-    """Cylinder on an incline; E, nu, rho0 are its material's, `theta` in degrees, g in m/s2, radius R in m, T in s.
+class RollingCylinder(OnIncline):
+    """Cylinder on an incline, see OnIncline; radius R in m, T in s.
 
     References
     ----------
     Bardenhagen, Brackbill & Sulsky 2000, doi:10.1016/S0045-7825(99)00338-2, for friction at the nodes.
     """
 
-    source: ClassVar[str] = "Bardenhagen, Brackbill & Sulsky 2000, doi:10.1016/S0045-7825(99)00338-2"
-    material: ClassVar[str] = "hypoelastic"
     cells: ClassVar[tuple[int, ...]] = (8, 16, 32)
     quick: ClassVar[tuple[int, ...]] = (8, 16)
-    methods: ClassVar[tuple[str, ...]] = ("cpdi", "gimp", "bspline2", "mpm")
+    lengths: ClassVar[tuple[str, ...]] = ("R", "T")
     figures: ClassVar[dict[str, Drawn]] = {
         "travel": Drawn("time [s]", "travel [m]", "way of the centre", True),
         "turn": Drawn("time [s]", "turn [rad]", "turn of the cylinder", True),
     }
 
-    E: float = 1e7
-    nu: float = 0.0
-    rho0: float = 1000.0
-    theta: float = 25.0
-    mu: float = 0.3
-    g: float = 10.0
     R: float = 0.5
     T: float = 0.6
-
-    @property
-    def plane(self) -> Incline:
-        """Plane, with its friction."""
-        return Incline(self.theta, self.mu, self.g)
 
     @property
     def rolls(self) -> bool:
@@ -95,13 +82,6 @@ class RollingCylinder(Problem):
             return 2 / 3 * float(self.plane.gravity[0]), 2 / 3 * float(self.plane.gravity[0]) / self.R
         return self.plane.sliding, -2 * self.mu * float(self.plane.gravity[1]) / self.R
 
-    def check(self, run: Run) -> None:
-        """Raise ValueError for what is no incline, or whose method knows no floor."""
-        if not 0 < self.theta < 60 or not min(self.g, self.R, self.T, self.mu) > 0:
-            raise ValueError("rolling_cylinder: theta must be above 0 and below 60; mu, g, R and T above zero")
-        if create(METHODS, run.method).reference:
-            raise ValueError(f"rolling_cylinder: nodes of {run.method} move with the body, and are no floor; take cpdi")
-
     def setup(self, run: Run) -> Setup:
         """Cylinder a cell above the floor, without stress."""
         dx = 2 * self.R / run.cells
@@ -111,8 +91,8 @@ class RollingCylinder(Problem):
         layout = Layout(made.X + centre, made.V0, made.r0)
         scale = (SLIPS if self.rolls else RUBS) if run.control else 1.0
         way = 0.5 * float(self.plane.gravity[0]) * self.T**2
-        setup = self.plane.setup(run, layout, dx, way, self.T, scale * self.mu)
-        return Setup(setup.model, setup.steps, Roll(self, run, setup.model), setup.load)
+        model, steps = self.plane.placed(run, layout, dx, way, self.T, scale * self.mu)
+        return Setup(model, steps, Roll(self, run, model), leave)
 
     def held(self, run: Run) -> tuple[Held, ...]:
         """Gap of a cylinder that rolls, travel and turn of one that slides, and friction to round-off."""

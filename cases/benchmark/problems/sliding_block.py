@@ -24,12 +24,12 @@ from typing import ClassVar
 
 import numpy as np
 
-from mpm_verify.cases.benchmark.incline import Incline, Motion
-from mpm_verify.cases.benchmark.problem import Drawn, Held, Measured, Problem, Setup
+from mpm_verify.cases.benchmark.incline import Motion, OnIncline, leave
+from mpm_verify.cases.benchmark.problem import Drawn, Held, Measured, Setup
 from mpm_verify.cases.benchmark.run import Run
 from mpm_verify.solver.layout import rectangle
 from mpm_verify.solver.model import Model
-from mpm_verify.solver.plugins import METHODS, create, split
+from mpm_verify.solver.plugins import split
 
 SLIDES, STICKS = 0.3, 0.6  # friction up to which the error of sliding was measured, and from which that of sticking
 RUBS, SLIPS = 1.1, 0.7  # friction of the failing control, of a block that slides and of one that sticks
@@ -37,34 +37,21 @@ LONG = 2.0  # length over height: pressed all along its base
 
 
 @dataclass(frozen=True)
-class SlidingBlock(Problem):
-    """Block on an incline; E, nu, rho0 are its material's, `theta` in degrees, g in m/s2, height H in m, T in s.
+class SlidingBlock(OnIncline):
+    """Block on an incline, see OnIncline; height H in m, T in s.
 
     References
     ----------
     Bardenhagen, Brackbill & Sulsky 2000, doi:10.1016/S0045-7825(99)00338-2, for friction at the nodes.
     """
 
-    source: ClassVar[str] = "Bardenhagen, Brackbill & Sulsky 2000, doi:10.1016/S0045-7825(99)00338-2"
-    material: ClassVar[str] = "hypoelastic"
     cells: ClassVar[tuple[int, ...]] = (4, 8, 16)
     quick: ClassVar[tuple[int, ...]] = (4, 8)
-    methods: ClassVar[tuple[str, ...]] = ("cpdi", "gimp", "bspline2", "mpm")
+    lengths: ClassVar[tuple[str, ...]] = ("H", "T")
     figures: ClassVar[dict[str, Drawn]] = {"travel": Drawn("time [s]", "travel [m]", "way of the block", True)}
 
-    E: float = 1e7
-    nu: float = 0.0
-    rho0: float = 1000.0
-    theta: float = 25.0
-    mu: float = 0.3
-    g: float = 10.0
     H: float = 1.0
     T: float = 0.5
-
-    @property
-    def plane(self) -> Incline:
-        """Plane, with its friction."""
-        return Incline(self.theta, self.mu, self.g)
 
     @property
     def slides(self) -> bool:
@@ -83,14 +70,11 @@ class SlidingBlock(Problem):
                 f"sliding_block: a block of {run.material} does not keep the stress that it starts with; "
                 "leave --material out"
             )
-        if not 0 < self.theta < 60 or not min(self.g, self.H, self.T, self.mu) > 0:
-            raise ValueError("sliding_block: theta must be above 0 and below 60; mu, g, H and T above zero")
+        super().check(run)
         if min(self.mu, self.plane.slope) > LONG / 3:
             raise ValueError(
                 f"sliding_block: a block of mu and tan(theta) above {LONG / 3:.2f} tips; take a lower theta"
             )
-        if create(METHODS, run.method).reference:
-            raise ValueError(f"sliding_block: nodes of {run.method} move with the body, and are no floor; take cpdi")
 
     def setup(self, run: Run) -> Setup:
         """Block on the floor, with the stress of a layer."""
@@ -98,11 +82,11 @@ class SlidingBlock(Problem):
         layout = rectangle(np.zeros(2), self.H * np.array([LONG, 1.0]), dx, run.ppc, run.offset)
         scale = (RUBS if self.slides else SLIPS) if run.control else 1.0
         way = 0.5 * max(self.plane.sliding, 0.5 * self.plane.gravity[0]) * self.T**2
-        setup = self.plane.setup(run, layout, dx, way, self.T, scale * self.mu)
-        p, weight = setup.model.particles, -self.rho0 * self.plane.gravity[1]
+        model, steps = self.plane.placed(run, layout, dx, way, self.T, scale * self.mu)
+        p, weight = model.particles, -self.rho0 * self.plane.gravity[1]
         p.sigma[:, 1] = -weight * (self.H - p.x[:, 1])
         p.sigma[:, 3] = -min(self.mu, self.plane.slope) * p.sigma[:, 1]
-        return Setup(setup.model, setup.steps, Slide(self, setup.model), setup.load)
+        return Setup(model, steps, Slide(self, model), leave)
 
     def held(self, run: Run) -> tuple[Held, ...]:
         """Travel, and friction to round-off."""
