@@ -12,17 +12,16 @@ What it cannot see: nothing of walls; with A = 1e-6 no particle crosses a cell, 
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import pi, sqrt
 from typing import TYPE_CHECKING, ClassVar
 
-from mpm_verify.mms.square import Square
+from mpm_verify.mms.bump import Bumped
 
 if TYPE_CHECKING:
     import sympy as sp
 
 
 @dataclass(frozen=True)
-class Bump(Square):
+class Bump(Bumped):
     """Bump in the middle of a free square.
 
     Parameters
@@ -40,24 +39,7 @@ class Bump(Square):
         For a parameter that is out of range.
     """
 
-    A: float = 1e-6
-    boundary: ClassVar[str] = "free"
     in_single: ClassVar[dict[str, float]] = {"A": 1e-3}  # for solvers in single precision, whose rounding is above 1e-6
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        steepest = 4 * pi * sqrt(27 / 256) / self.L  # largest gradient of the fourth power, on the lines of symmetry
-        self.limit("A", self.A, 1 / (2 * steepest))
-
-    @property
-    def margin(self) -> float:
-        """Distance by which the grid is wider than the body: two cells where eight cover it."""
-        return 0.25 * self.L
-
-    @property
-    def amplitude(self) -> float:
-        """Amplitude over the side."""
-        return abs(self.A) / self.L
 
     def displacement(self, X: Sequence["sp.Symbol"], t: "sp.Symbol") -> "sp.Matrix":
         """Displacement u (2,) of the reference position X and the time t."""

@@ -13,9 +13,9 @@ crosses a cell, and all is linear in the strain.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import pi, sqrt
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
+from mpm_verify.mms.bump import Bumped
 from mpm_verify.mms.square import Line
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Bump1d(Line):
+class Bump1d(Bumped, Line):
     """Bump in the middle of a free bar.
 
     Parameters
@@ -40,24 +40,6 @@ class Bump1d(Line):
     ValueError
         For a parameter that is out of range.
     """
-
-    A: float = 1e-6
-    boundary: ClassVar[str] = "free"
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        steepest = 4 * pi * sqrt(27 / 256) / self.L  # largest derivative of the fourth power
-        self.limit("A", self.A, 1 / (2 * steepest))
-
-    @property
-    def margin(self) -> float:
-        """Distance by which the grid is longer than the body at either end: one cell where four cover it."""
-        return 0.25 * self.L
-
-    @property
-    def amplitude(self) -> float:
-        """Amplitude over the length."""
-        return abs(self.A) / self.L
 
     def displacement(self, X: Sequence["sp.Symbol"], t: "sp.Symbol") -> "sp.Matrix":
         """Displacement u (1,) of the reference position X and the time t."""

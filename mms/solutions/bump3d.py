@@ -12,9 +12,9 @@ What it cannot see: nothing of walls; with A = 1e-6 no particle crosses a cell, 
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import pi, sqrt
 from typing import TYPE_CHECKING, ClassVar
 
+from mpm_verify.mms.bump import Bumped
 from mpm_verify.mms.square import Cube
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Bump3d(Cube):
+class Bump3d(Bumped, Cube):
     """Bump in the middle of a free cube.
 
     Parameters
@@ -40,23 +40,7 @@ class Bump3d(Cube):
         For a parameter that is out of range.
     """
 
-    A: float = 1e-6
-    boundary: ClassVar[str] = "free"
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        steepest = 4 * pi * sqrt(27 / 256) / self.L  # largest derivative of the fourth power, on the lines of symmetry
-        self.limit("A", self.A, 1 / (3 * steepest))
-
-    @property
-    def margin(self) -> float:
-        """Distance by which the grid is wider than the body: one cell where four cover it."""
-        return 0.25 * self.L
-
-    @property
-    def amplitude(self) -> float:
-        """Amplitude over the side."""
-        return abs(self.A) / self.L
+    gradients: ClassVar[int] = 3
 
     def displacement(self, X: Sequence["sp.Symbol"], t: "sp.Symbol") -> "sp.Matrix":
         """Displacement u (3,) of the reference position X and the time t."""

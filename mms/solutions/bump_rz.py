@@ -13,11 +13,11 @@ the strain; with a wide bore the hoop terms are small.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import pi, sqrt
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from mpm_verify.mms.bump import Bumped
 from mpm_verify.mms.square import Revolved
 from mpm_verify.solver.state import Floats
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class BumpRz(Revolved):
+class BumpRz(Bumped, Revolved):
     """Bump in the middle of a free ring of square section.
 
     Parameters
@@ -46,16 +46,13 @@ class BumpRz(Revolved):
         For a parameter that is out of range.
     """
 
-    A: float = 1e-6
     bore: float = 0.5
-    boundary: ClassVar[str] = "free"
+    gradients: ClassVar[int] = 4
 
     def __post_init__(self) -> None:
         super().__post_init__()
         if not 0.5 * self.L <= self.bore < 1e6 * self.L:
             raise ValueError(f"bore = {self.bore} must be half of L = {self.L} at least, so that the grid has room")
-        steepest = 4 * pi * sqrt(27 / 256) / self.L  # largest derivative of the fourth power
-        self.limit("A", self.A, 1 / (4 * steepest))
 
     @property
     def lower(self) -> Floats:
@@ -66,16 +63,6 @@ class BumpRz(Revolved):
     def upper(self) -> Floats:
         """Upper corner of the section, radius and height, (2,)."""
         return np.array([self.bore + self.L, self.L])
-
-    @property
-    def margin(self) -> float:
-        """Distance by which the grid is wider than the section: one cell where four cover it."""
-        return 0.25 * self.L
-
-    @property
-    def amplitude(self) -> float:
-        """Amplitude over the side."""
-        return abs(self.A) / self.L
 
     def displacement(self, X: Sequence["sp.Symbol"], t: "sp.Symbol") -> "sp.Matrix":
         """Displacement u (2,), in r and z, of the radius and height X and the time t."""
