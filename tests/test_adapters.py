@@ -94,7 +94,7 @@ def test_stored_results_are_those_of_the_studies(scripts: tuple[Any, Any]) -> No
 
 
 def test_fixed_corotated_has_the_stress_of_its_energy() -> None:
-    """Its stress is dW/dF Fᵀ / J, by differences of the energy; zz too."""
+    """Stress as dW/dF Fᵀ / J, by differences of the energy; zz too."""
     model: Any = create(MATERIALS, str(ADAPTERS / "mpm99" / "fixed_corotated.py"))
     F, h = np.array([[1.1, 0.2, 0.0], [-0.15, 0.9, 0.0], [0.0, 0.0, 1.0]]), 1e-6
     P = np.zeros((3, 3))
@@ -164,7 +164,7 @@ def test_a_code_gives_what_is_stored(
 def test_the_tiny_solver_without_spin_gives_what_is_stored(
     scripts: tuple[Any, Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """It is a program of ours, and needs none of the others: u has the digits of the code that leaves the spin out."""
+    """Program of ours that needs none of the others: u has the digits of the code that leaves the spin out."""
     study, page = scripts
     monkeypatch.setitem(globals(), "PYTHON", sys.executable)
     monkeypatch.chdir(TOP)
@@ -175,7 +175,7 @@ def test_the_tiny_solver_without_spin_gives_what_is_stored(
 
 
 def test_a_comparison_says_where_a_code_parts_from_the_reference(scripts: tuple[Any, Any]) -> None:
-    """In the second digit of u: 7.608e-3 where hats have 7.501e-3."""
+    """Second digit of u: 7.608e-3 where hats have 7.501e-3."""
     study, page = scripts
     (found,) = (page.stored(name) for name in study.COMPARED)
     assert found["outcome"] == "parts"

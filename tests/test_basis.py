@@ -301,7 +301,7 @@ def test_splines_at_walls(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["bspline2", "bspline3"])
 def test_splines_are_smooth(name: str) -> None:
-    """Continuous values and slopes where a particle passes from one set of neighbours to the next, walls too."""
+    """Values and slopes, continuous where a particle passes from one set of neighbours to the next, walls too."""
     for cell in np.arange(PAD, NX - 1 - PAD, 0.5):
         sides = []
         for shift in (-1e-9, 1e-9):

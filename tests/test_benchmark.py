@@ -160,7 +160,7 @@ def test_the_formula_vanishes_where_particles_fill_cells_alike() -> None:
 
 @pytest.mark.parametrize(("method", "distance"), [("mpm", 1.5), ("cpdi", 2.0), ("bspline2", 2.5), ("bspline3", 3.5)])
 def test_bars_touch_at_the_reach_of_their_weights(method: str, distance: float) -> None:
-    """At a distance that does not fall in cells, and momentum is kept to round-off."""
+    """Distance of contact that does not fall in cells, and momentum is kept to round-off."""
     for cells in (8, 16):
         found = ran("colliding_bars", method=method, cells=cells).values
         run = Run(**canonical({"problem": "colliding_bars", "method": method, "cells": cells}))
@@ -184,7 +184,7 @@ def test_bars_exchange_their_velocities() -> None:
     ids=lambda one: str(one),
 )
 def test_the_control_fails(problem: str, cells: int | tuple[int, ...], tmp_path: Path) -> None:
-    """Of the column the force and stress of each cell, of a bar what a spoilt stress or mass changes."""
+    """Controls: of the column the force and stress of each cell, of a bar what a spoilt stress or mass changes."""
     assert "FAIL" in outcomes(problem, tmp_path, cells=cells, method="cpdi", control=True)
 
 

@@ -85,7 +85,7 @@ def test_crossings_make_energy_in_classical_mpm() -> None:
 
 
 def test_the_collapse(done: Any) -> None:
-    """It runs out, monotonously in its front, and into a heap that falls off from the wall."""
+    """Run-out, monotonously in its front, and into a heap that falls off from the wall."""
     result, arrays = done
     front, profile = arrays["curve_front_99"], arrays["curve_profile"]
     assert np.diff(front).min() > -1e-3
@@ -159,7 +159,7 @@ def test_a_mirrored_column_is_the_mirror_image(change: Any) -> None:
     ids=str,
 )
 def test_what_else_there_is(change: Any, gone: float) -> None:
-    """It finishes, falls, and its budget closes."""
+    """End, fall, and a budget that closes."""
     result, arrays = execute(replace(SMALL, **{"duration": 0.25, **change}))
     assert result.failure is None
     assert result.values["unbalanced"] < 5e-3
@@ -229,7 +229,7 @@ def test_without_what_keeps_it_alive() -> None:
 
 
 def test_the_stress_at_first() -> None:
-    """At rest, vertical stress of the weight above, K0 of Jaky; oedometric: admissible, of the material's own path."""
+    """Rest, vertical stress of the weight above, K0 of Jaky; oedometric: admissible, of the material's own path."""
     model, _ = setup(replace(SMALL, start="k0"))
     p = model.particles
     weight = 2650 * 10 * (SMALL.height - p.x[:, 1])
@@ -300,7 +300,7 @@ def test_refusals(change: Any, says: str) -> None:
 
 @pytest.mark.parametrize("changes", [{"duration": 1e-6}, {"duration": 1e-9}, {"duration": 0.01, "damping": 0.99}])
 def test_a_column_that_has_had_no_time_to_fall_is_not_at_rest(changes: dict[str, float]) -> None:
-    """It stands as still as a heap at its end."""
+    """Column that stands as still as a heap at its end."""
     result, _ = execute(replace(SMALL, **changes))
     assert result.status == "finished"
     assert result.values["rest"] == inf

@@ -147,7 +147,7 @@ AGAIN_SLOW = [
     [*AGAIN, *(pytest.param(*one, marks=pytest.mark.slow) for one in AGAIN_SLOW)],
 )
 def test_stored_rows_are_those_of_a_run(solution: str, cells: int, scheme: Scheme) -> None:
-    """To the unit of their sixth digit; a run that fails is stored as one."""
+    """Agreement to the unit of the sixth digit; a run that fails is stored as one."""
     found, known = row(Case(solution, cells), scheme), table()[Case(solution, cells)][scheme]
     assert set(found) == set(HEAD)
     assert (found["failed"] != "") == (not known)

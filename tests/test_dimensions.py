@@ -81,7 +81,7 @@ def solid(flat: Any) -> Given:
 @later
 @pytest.mark.parametrize("text", ["bump_rz:A=0.04", "cylinder_rz"])
 def test_axisymmetric_fields_are_those_of_three_dimensions(text: str) -> None:
-    """At points around the axis: the existing derivation of three dimensions, turned back, to round-off."""
+    """Points around the axis: the existing derivation of three dimensions, turned back, to round-off."""
     flat, whole = made(text), manufacture(solid(create(SOLUTIONS, text)), LAW, LAW.rho0)
     at = RZ if text.startswith("bump") else RZ - (0.5, 0.0)
     c, s, zero, one = np.cos(ANGLE), np.sin(ANGLE), np.zeros(25), np.ones(25)

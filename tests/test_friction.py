@@ -63,8 +63,10 @@ SCHEMES = [("flip", "usl"), ("flip", "musl"), ("flip", "usf"), ("pic", "usl"), (
 
 @pytest.mark.parametrize(("transfer", "stress"), SCHEMES)
 def test_a_block_that_slides(transfer: str, stress: str) -> None:
-    """With mu = 0.3 a block has g (sin - mu cos), whatever carries its velocity: in each step friction is mu times what
-    the plane gives, and the plane carries the weight."""
+    """Block with mu = 0.3 that has g (sin - mu cos), whatever carries its velocity.
+
+    In each step friction is mu times what the plane gives, and the plane carries the weight.
+    """
     m = incline(0.3, scheme=Scheme(create(TRANSFERS, transfer), stress))
     x, v = go(m, 0.2)
     t = m.dt * np.arange(1, len(v) + 1)
@@ -76,8 +78,10 @@ def test_a_block_that_slides(transfer: str, stress: str) -> None:
 
 
 def test_a_block_that_comes_to_rest() -> None:
-    """With mu = 0.6 it stops after v0 / g (mu cos - sin), has slid v0^2 / 2 g (mu cos - sin), and no node moves any
-    more."""
+    """Block with mu = 0.6 that stops after v0 / g (mu cos - sin) and has slid v0^2 / 2 g (mu cos - sin).
+
+    Then no node moves any more.
+    """
     m = incline(0.6)
     slow = G * (0.6 * cos(INCLINE) - sin(INCLINE))
     x, v = go(m, V0 / slow + 0.15)
@@ -98,7 +102,7 @@ def test_a_block_that_comes_to_rest() -> None:
 
 @pytest.mark.parametrize("method", ["mpm", "gimp", "cpdi", "cpdi2", "bspline2", "bspline3"])
 def test_each_method_has_the_same_friction(method: str) -> None:
-    """To what waves make of the nodes before the block, which have hardly any mass."""
+    """Agreement to what waves make of the nodes before the block, which have hardly any mass."""
     m = incline(0.3, method=method)
     _, v = go(m, 0.05)
     a = G * (sin(INCLINE) - 0.3 * cos(INCLINE))
@@ -205,7 +209,7 @@ def flown(stress: str, v: float, courant: float = 0.4) -> Model:
 
 @pytest.mark.parametrize("stress", ["usl", "musl", "usf"])
 def test_nothing_strains_a_body_that_leaves(stress: str) -> None:
-    """With update-stress-first neither, which strains before it knows the forces."""
+    """Update-stress-first neither, which strains before it knows the forces."""
     m = flown(stress, 1.0)
     for _ in range(2):
         advance(m, lambda particles, t: None)
@@ -215,7 +219,7 @@ def test_nothing_strains_a_body_that_leaves(stress: str) -> None:
 
 @pytest.mark.parametrize("courant", [0.4, 0.2])
 def test_a_strike_strains_a_step_late_with_update_stress_first(courant: float) -> None:
-    """By v dt / dx, of first order in dt."""
+    """Strain of v dt / dx, of first order in dt."""
     at_once, late = flown("usl", -1.0, courant), flown("usf", -1.0, courant)
     strain = courant / STIFF.wave_speed()
     assert np.abs(at_once.particles.F - np.eye(2)).max() == pytest.approx(strain, rel=1e-9)
@@ -310,7 +314,7 @@ def test_pushed_walls_beside_friction() -> None:
 
 
 def test_a_gate_beside_friction_strains_while_it_is_there() -> None:
-    """Its nodes have its velocity in the strain of musl and usf too, and not after it is gone; contact is kept."""
+    """Nodes that have the gate's velocity in the strain of musl and usf too, until it is gone; contact is kept."""
     grid = Grid(DX, np.zeros(2), np.ones(2))
     floor = frictional(grid, ("free", "free", 0.5, "free"))
     assert isinstance(floor, FrictionalWalls)

@@ -356,7 +356,7 @@ def test_rates_that_agree_on_a_straight_motion_are_no_other_solid_there() -> Non
 
 
 def test_no_case_is_exported_of_a_rate_that_strays() -> None:
-    """Its motion would be that of the energy; with the logarithmic rate, and where nothing turns, it is exact."""
+    """Motion that would be that of the energy; with the logarithmic rate, and where nothing turns, it is exact."""
     with pytest.raises(ValueError, match=r"rate without an energy.* export --material hencky"):
         made("clamped_shear", "hencky_rate:rate=jaumann", 8, 4, 0.4, 4)
     for solution, rate in (("axis_aligned", "jaumann"), ("clamped_shear", "logarithmic")):

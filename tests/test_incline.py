@@ -82,7 +82,7 @@ def test_a_block(problem: str, cells: int) -> None:
 
 
 def test_a_cylinder() -> None:
-    """It rolls, and slides in its failing control."""
+    """Cylinder that rolls, and slides in its failing control."""
     values, wrong = missed(made("rolling_cylinder", 8))
     assert wrong == []
     assert values["gap"] == pytest.approx(0.563, abs=0.02)
