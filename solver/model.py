@@ -22,6 +22,10 @@ Load = Callable[[Particles, float], None]
 Deformation = Literal["linear", "exponential"]
 
 
+def no_load(particles: Particles, t: float) -> None:
+    """Leave the body force of particles as it is: zero, or one that travels with them."""
+
+
 @dataclass(frozen=True)
 class Scheme:
     """Choices of a step.

@@ -101,10 +101,6 @@ class OnIncline(Problem):
             raise ValueError(f"{name}: nodes of {run.method} move with the body, and are no floor; take cpdi")
 
 
-def leave(particles: object, t: float) -> None:
-    """Leave the body force as it is: gravity is constant, and travels with the particles."""
-
-
 class Motion(Watch):
     """Watch of the mean shift, velocity and turn of a body after each step.
 

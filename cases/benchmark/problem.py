@@ -17,10 +17,10 @@ from typing import ClassVar, Literal
 from mpm_verify.cases.benchmark.run import Run
 from mpm_verify.cases.harness.checks import Unjudged, Way
 from mpm_verify.cases.judging.records import Expectation
-from mpm_verify.solver.model import Load, Model, Observer
+from mpm_verify.solver.model import Load, Model, Observer, no_load
 from mpm_verify.solver.plugins import MATERIALS, create, parameters_of, split
 from mpm_verify.solver.plugins import canonical as canonical_name
-from mpm_verify.solver.state import Floats, Particles
+from mpm_verify.solver.state import Floats
 
 Pair = tuple[str, str]  # quantity and norm
 Errors = dict[str, dict[str, float]]
@@ -60,10 +60,6 @@ class Watch(Observer):
     def found(self, model: Model) -> Measured:
         """Numbers of the run, after its last step."""
         raise NotImplementedError
-
-
-def no_load(particles: Particles, t: float) -> None:
-    """No body force acts."""
 
 
 @dataclass(frozen=True)

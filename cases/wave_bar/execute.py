@@ -15,8 +15,9 @@ from mpm_verify.cases.wave_bar.run import Result, Run
 from mpm_verify.solver.boundary import box
 from mpm_verify.solver.failure import Failure, RunFailed
 from mpm_verify.solver.layout import rectangle
+from mpm_verify.solver.model import no_load
 from mpm_verify.solver.plugins import MATERIALS, METHODS, TRANSFERS, create
-from mpm_verify.solver.state import Floats, Grid, Particles
+from mpm_verify.solver.state import Floats, Grid
 from mpm_verify.solver.step import Model, Observer, Scheme, advance, check_time_step
 
 LENGTH, ROWS = 1.0, 4  # of the bar, and cells of its height
@@ -86,10 +87,6 @@ def execute(run: Run, tick: Callable[[float], None] = lambda fraction: None) -> 
         parameters=parameters("material", model.material) | parameters("method", model.basis),
     )
     return result, {"t": t, "q": q}
-
-
-def no_load(particles: Particles, t: float) -> None:
-    """No body force acts."""
 
 
 def frequency(t: Floats, q: Floats) -> float:

@@ -35,7 +35,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from mpm_verify.cases.benchmark.incline import Motion, OnIncline, leave
+from mpm_verify.cases.benchmark.incline import Motion, OnIncline
 from mpm_verify.cases.benchmark.problem import Drawn, Held, Measured, Setup
 from mpm_verify.cases.benchmark.run import Run
 from mpm_verify.solver.layout import Layout, per_side
@@ -92,7 +92,7 @@ class RollingCylinder(OnIncline):
         scale = (SLIPS if self.rolls else RUBS) if run.control else 1.0
         way = 0.5 * float(self.plane.gravity[0]) * self.T**2
         model, steps = self.plane.placed(run, layout, dx, way, self.T, scale * self.mu)
-        return Setup(model, steps, Roll(self, run, model), leave)
+        return Setup(model, steps, Roll(self, run, model))
 
     def held(self, run: Run) -> tuple[Held, ...]:
         """Gap of a cylinder that rolls, travel and turn of one that slides, and friction to round-off."""

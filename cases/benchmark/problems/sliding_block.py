@@ -24,7 +24,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from mpm_verify.cases.benchmark.incline import Motion, OnIncline, leave
+from mpm_verify.cases.benchmark.incline import Motion, OnIncline
 from mpm_verify.cases.benchmark.problem import Drawn, Held, Measured, Setup
 from mpm_verify.cases.benchmark.run import Run
 from mpm_verify.solver.layout import rectangle
@@ -86,7 +86,7 @@ class SlidingBlock(OnIncline):
         p, weight = model.particles, -self.rho0 * self.plane.gravity[1]
         p.sigma[:, 1] = -weight * (self.H - p.x[:, 1])
         p.sigma[:, 3] = -min(self.mu, self.plane.slope) * p.sigma[:, 1]
-        return Setup(model, steps, Slide(self, model), leave)
+        return Setup(model, steps, Slide(self, model))
 
     def held(self, run: Run) -> tuple[Held, ...]:
         """Travel, and friction to round-off."""
