@@ -214,5 +214,16 @@ def test_a_study_passes_and_its_control_fails(tmp_path: object) -> None:
 @pytest.mark.parametrize("method", ["mpm", "cpdi", "cpdi2", "bspline2", "gimp"])
 def test_a_campaign_finds_sound_strips_sound(method: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Else nothing that is planted would be noticed: a FAIL against a FAIL tells nothing."""
-    monkeypatch.setattr(checks, "COARSE", {"footing": checks.COARSE["footing"]})
+    (footing,) = (name for name in checks.COARSE if name.startswith("footing"))
+    monkeypatch.setattr(checks, "COARSE", {footing: checks.COARSE[footing]})
     assert checks.benchmark(checks.Subject(method, tmp_path, tmp_path, True)) == ("PASS", "")
+    assert checks.may(footing, method) is (method != "gimp")
+
+
+@pytest.mark.slow
+def test_a_campaign_sees_a_strip_that_does_not_fail(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (footing,) = (name for name in checks.COARSE if name.startswith("footing"))
+    monkeypatch.setattr(checks, "COARSE", {f"{footing},settlement=5": checks.COARSE[footing]})  # of 30 that it takes
+    outcome, evidence = checks.benchmark(checks.Subject("cpdi", tmp_path, tmp_path, True))
+    assert outcome == "FAIL"
+    assert evidence.endswith("cpdi fbar: bearing, limit")
