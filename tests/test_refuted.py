@@ -49,6 +49,21 @@ def test_the_least_fraction_is_that_which_is_there_where_nothing_scatters(fracti
     assert found.least(MOST) == pytest.approx(fraction, abs=0.01)
 
 
+@pytest.mark.parametrize("power", [0, 1])
+@pytest.mark.parametrize("size", [0.6, 0.8, 0.95])
+def test_a_part_that_adds_in_the_square_has_its_size(size: float, power: int) -> None:
+    """It raises the finest error by 1 - sqrt(1 - size^2), 20 % to 69 %."""
+    other = size / np.sqrt(1 - size**2) * H[-1] ** 2 * (H / H[-1]) ** power
+    got, raised = judged(np.hypot(H**2, other)), 1 - np.sqrt(1 - size**2)
+    assert (got.outcome, got.reason.code) == (Outcome.FAIL, ReasonCode.CONTAMINATED)
+    told = got.reason.numbers
+    assert told["power"] == 2
+    assert told["lower" if power else "floor"] == pytest.approx(size, abs=1e-6)
+    assert told["least"] == pytest.approx(raised, abs=0.01)
+    said = verdicts.reason(got.reason)
+    assert f"{100 * size:.0f} % of the finest error, adding in the square; without that it would be smaller" in said
+
+
 def test_scatter_lowers_the_least_fraction() -> None:
     """And more of it refutes nothing: 3 % leave a floor of 55 % at 15 % to 54 %."""
     rng = np.random.default_rng(1)

@@ -5,6 +5,7 @@ the square, since an error is a root mean square: 40 % of it raise the error by 
 """
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -44,6 +45,36 @@ def contamination(h: Array, error: Array, order: float, chance: float) -> Contam
     lower, floor = float(plain.fraction[1:-1].sum()), float(plain.fraction[-1])
     squared = float(np.sqrt(square.bound(2 * chance)))
     return Contamination(lower, floor, plain.bound(chance), squared, _shown(plain, square))
+
+
+@dataclass(frozen=True)
+class Nearest:
+    """Nearest sum of order, lower order and floor, or sum of their squares.
+
+    Parameters
+    ----------
+    power
+        1 where they add, 2 where their squares add.
+    lower, floor
+        Lower order and floor over the finest error.
+    left
+        Norm of the relative deviations from it.
+    dof
+        Degrees of freedom that are left.
+    """
+
+    power: int
+    lower: float
+    floor: float
+    left: float
+    dof: int
+
+
+def nearest(h: Array, error: Array, order: float, power: int = 1) -> Nearest:
+    """Fit errors (n,) to this power by the sum of the terms to this power, no term negative."""
+    made = _Mixed(terms(h, order, power), (error / error[-1]) ** power)
+    lower, floor = (float(part) ** (1 / power) for part in (made.fraction[1:-1].sum(), made.fraction[-1]))
+    return Nearest(power, lower, floor, made.residual / power, made.dof)
 
 
 def terms(h: Array, order: float, power: int) -> list[Array]:

@@ -2,11 +2,10 @@
 
 from math import log
 
-from mpm_verify.cases.judging.contamination import contamination
 from mpm_verify.cases.judging.fit import LEVELS, Fit
 from mpm_verify.cases.judging.quantity import Quantity
 from mpm_verify.cases.judging.records import Contamination, Numbers, Reason, ReasonCode, Recorded
-from mpm_verify.cases.judging.refuted import SURE, Refutation
+from mpm_verify.cases.judging.refuted import Refutation
 from mpm_verify.solver.failure import FailureKind
 
 FAR = 2.0  # times the recorded error, carried over to the finest cells
@@ -75,7 +74,7 @@ def _short(q: Quantity, order: float) -> Reason | None:
         return None
     numbers = {"first": first, "last": last, "band_low": low}
     if max(fit.orders[:-2]) >= low and last < order - 1:
-        numbers["flat"] = _best(q, order).floor * float(fit.error[-1])
+        numbers["flat"] = Refutation(fit, order, low).told.floor * float(fit.error[-1])
     return Reason(ReasonCode.FALLS_SHORT, {**numbers})
 
 
@@ -84,12 +83,9 @@ def _mixed(q: Quantity, order: float) -> Reason | None:
     fit, refutation = q.fit, Refutation(q.fit, order, q.band[0])
     if fit.orders[-1] >= q.band[0] or fit.rises_to(q.band[0]) or not refutation.contaminated(MOST):
         return None
-    return Reason(ReasonCode.CONTAMINATED, parts(_best(q, order), fit) | {"least": refutation.least(MOST)})
-
-
-def _best(q: Quantity, order: float) -> Contamination:
-    """Parts of the best fit of all levels."""
-    return contamination(q.fit.h, q.fit.error, order, q.fit.chance(SURE))
+    best = refutation.told
+    numbers: Numbers = {"lower": best.lower, "floor": best.floor, "error": float(fit.error[-1]), "power": best.power}
+    return Reason(ReasonCode.CONTAMINATED, numbers | {"least": refutation.least(MOST)})
 
 
 def parts(mixed: Contamination, fit: Fit) -> Numbers:

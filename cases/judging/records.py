@@ -153,7 +153,7 @@ class ReasonCode(StrEnum):
     DIVERGES = "diverges"  # PASS [h_0, error_0, h_1, error_1 of growth; finer runs that failed]
     STALLS = "stalls"  # PASS [order_best, order_last, h_last; those of growth]
     ORDER_BELOW = "order_below"  # FAIL [order, start, end, confidence, last, band_low, band_high; from, of a window]
-    CONTAMINATED = "contaminated"  # FAIL [lower, floor, error: the finest; least of a tail, or most, squared]
+    CONTAMINATED = "contaminated"  # FAIL [lower, floor, error: the finest; least and power of a tail, or most, squared]
     MAGNITUDE = "magnitude"  # FAIL [h, ratio, within]
     FAR_OFF = "far_off"  # FAIL: more than FAR times the recorded error, carried over [h, ratio, recorded_h]
     NOTHING_MOVES = "nothing_moves"  # FAIL: the error of u is u itself

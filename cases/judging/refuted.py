@@ -11,7 +11,7 @@ from functools import cached_property
 
 import numpy as np
 
-from mpm_verify.cases.judging.contamination import relative, terms
+from mpm_verify.cases.judging.contamination import Nearest, nearest, relative, terms
 from mpm_verify.cases.judging.fit import Array, Fit
 from mpm_verify.cases.judging.scatter import EXACT, limit
 
@@ -47,10 +47,17 @@ class Refutation:
         return [x**self.order / (1 - s + s * x) for s in np.linspace(0, most, STARTS)]
 
     @cached_property
-    def mixed(self) -> tuple[float, float]:
-        """Norm of what the best fit of order, lower order and floor leaves, and its degrees of freedom."""
-        part, left = relative(terms(self.fit.h, self.order, 1), self.scaled)
-        return left, float(len(part) and len(self.scaled) - np.count_nonzero(part))
+    def mixed(self) -> tuple[Nearest, Nearest]:
+        """Best fit of order, lower order and floor, where they add and where their squares add."""
+        plain, square = (nearest(self.fit.h, self.fit.error, self.order, power) for power in (1, 2))
+        return plain, square
+
+    @property
+    def told(self) -> Nearest:
+        """The better of the two fits: a sum, unless a sum of squares leaves less by more than chance."""
+        plain, square = self.mixed
+        chance = self.chance(square.left, square.dof, SURE) if square.dof else plain.left
+        return square if plain.left > np.hypot(square.left, chance) + EXACT else plain
 
     @cached_property
     def scaled(self) -> Array:
@@ -87,7 +94,7 @@ class Refutation:
 
     def contaminated(self, allowed: float) -> bool:
         """Whether more than `allowed` of the finest error is of another order."""
-        return self.shown(*self.mixed, allowed, SURE)
+        return any(self.shown(one.left, one.dof, allowed, SURE) for one in self.mixed)
 
     def least(self, allowed: float) -> float:
         """Smallest fraction of the finest error that is of another order, as far as scatter goes, above `allowed`."""

@@ -184,8 +184,10 @@ def _order(r: Reason) -> str:
 def _contaminated(r: Reason) -> str:
     if "least" not in r.numbers:
         return f"the expected order is the smaller part: {_other(r)}, together at most {_percent(r, 'most', 1)}"
-    least = f"at least {_percent(r, 'least')} of that error are not of the expected order"
-    return f"the order falls below the band, as there is {_other(r)}; {least}{_coupled_too(r)}"
+    below, least = f"the order falls below the band, as there is {_other(r)}", _percent(r, "least")
+    if r.numbers.get("power") == 2:
+        return f"{below}, adding in the square; without that it would be smaller by {least} or more{_coupled_too(r)}"
+    return f"{below}; at least {least} of that error are not of the expected order{_coupled_too(r)}"
 
 
 def _other(r: Reason) -> str:
