@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
+from mpm_verify.cases.objectivity.exact import turn
 from mpm_verify.cases.objectivity.kinematic import Path
-from mpm_verify.cases.objectivity.turning_block import turn
 from mpm_verify.solver.plugins import MATERIALS, NEGATIVE_CONTROLS, RATES, available, create, load
 from mpm_verify.solver.rate_material import RateMaterial
 from mpm_verify.solver.state import Floats, Particles

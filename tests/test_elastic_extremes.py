@@ -10,7 +10,7 @@ from fixtures_rates import RIGHT, started, step_to
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from mpm_verify.cases.objectivity.turning_block import turn
+from mpm_verify.cases.objectivity.exact import turn
 from mpm_verify.solver.material.hypoelastic import Hypoelastic
 from mpm_verify.solver.material.neo_hookean import NeoHookean
 from mpm_verify.solver.state import Floats, Particles

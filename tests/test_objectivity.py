@@ -12,6 +12,7 @@ import pytest
 from mpm_verify.cases.harness.analysis import analyse
 from mpm_verify.cases.harness.build import Asked, build
 from mpm_verify.cases.harness.checks import Examination
+from mpm_verify.cases.harness.contract import case_named
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.cases.harness.study import Study
 from mpm_verify.cases.judging.records import Outcome
@@ -19,12 +20,11 @@ from mpm_verify.cases.objectivity import block as objectivity_block
 from mpm_verify.cases.objectivity import rates as objectivity_kinematic
 from mpm_verify.cases.objectivity.axes import KINEMATIC, Block
 from mpm_verify.cases.objectivity.block import PRINTED, REST, SMALL, blocks, misses, numbers
-from mpm_verify.cases.objectivity.exact import rotated
+from mpm_verify.cases.objectivity.exact import rotated, turn
 from mpm_verify.cases.objectivity.exam import examination
-from mpm_verify.cases.objectivity.execute import ObjectivityResult, execute
 from mpm_verify.cases.objectivity.findings import INERTIA, MODERATE, ObjectivityRemark, lead, of_runs
 from mpm_verify.cases.objectivity.rates import CONTROLS
-from mpm_verify.cases.objectivity.turning_block import turn
+from mpm_verify.cases.objectivity.result import ObjectivityResult
 from mpm_verify.mms.constitutive.simple_shear import SIMPLE_SHEAR
 from mpm_verify.reports.frames import read
 from mpm_verify.reports.sentences import failures
@@ -49,7 +49,7 @@ def coarse_folder() -> Path:
     store.create(study)
     small = blocks(COARSE)[SMALL]
     for run in study.runs:
-        result, arrays = execute(replace(run, L=COARSE.L / 3) if run == small else run)
+        result, arrays = case_named("objectivity").execute(replace(run, L=COARSE.L / 3) if run == small else run)
         store.put(replace(result, run=run, digest=run.digest), arrays)
     return folder
 
@@ -299,7 +299,8 @@ def test_a_second_time_nothing_is_computed(folder: Path, monkeypatch: pytest.Mon
     """Every part is a run of the store."""
     study = read(folder).study
     assert len(study.runs) == len(set(study.runs)) == 3 + len(WRONG) + 1
-    monkeypatch.setattr("mpm_verify.cases.objectivity.execute.execute", lambda *_: pytest.fail("computed"))
+    for part in ("execute", "prescribed"):
+        monkeypatch.setattr(f"mpm_verify.cases.objectivity.{part}.execute", lambda *_: pytest.fail("computed"))
     before = {file: file.stat().st_mtime_ns for file in (folder / "runs").iterdir()}
     conduct(study, Settings(folder, page=False))
     assert {file: file.stat().st_mtime_ns for file in (folder / "runs").iterdir()} == before

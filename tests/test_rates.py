@@ -42,10 +42,9 @@ from fixtures_rates import (
     walk,
 )
 
-from mpm_verify.cases.objectivity.exact import compressed
+from mpm_verify.cases.objectivity.exact import compressed, turn
 from mpm_verify.cases.objectivity.kinematic import follow, sheared, stretched_turn
 from mpm_verify.cases.objectivity.rates import STEPS, order_errors, simple_shear, slope
-from mpm_verify.cases.objectivity.turning_block import turn
 from mpm_verify.mms.constitutive.simple_shear import SIMPLE_SHEAR
 from mpm_verify.solver.material.hypoelastic import Hypoelastic
 from mpm_verify.solver.plugins import RATES, create

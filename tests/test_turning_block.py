@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mpm_verify.cases.objectivity.exact import ramped_column
+from mpm_verify.cases.objectivity.exact import ramped_column, turn
 from mpm_verify.cases.objectivity.turning_block import (
     OMEGA,
     RAMP,
@@ -15,7 +15,6 @@ from mpm_verify.cases.objectivity.turning_block import (
     execute,
     setup,
     spin,
-    turn,
 )
 from mpm_verify.solver.state import Particles
 from mpm_verify.solver.step import advance

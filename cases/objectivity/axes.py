@@ -48,6 +48,11 @@ class Block(RunRecord):
             raise ValueError("L, E, rho0, g and courant must be above zero, and nu between -1 and 0.5")
 
     @property
+    def computed_by(self) -> str:
+        """Module that runs its part: what only steps on a grid need is no part of the name of the other."""
+        return f"mpm_verify.cases.objectivity.{'execute' if self.part == BLOCK else 'prescribed'}"
+
+    @property
     def material(self) -> "Hypoelastic":
         """Linear elastic material of the paper."""
         from mpm_verify.solver.material.hypoelastic import Hypoelastic

@@ -14,7 +14,7 @@ from mpm_verify.cases.harness.study import Study
 from mpm_verify.cases.objectivity.axes import BLOCK, KINEMATIC, Block
 from mpm_verify.cases.objectivity.block import blocks
 from mpm_verify.cases.objectivity.exam import examination
-from mpm_verify.cases.objectivity.execute import ObjectivityResult
+from mpm_verify.cases.objectivity.result import ObjectivityResult
 
 __all__ = ["Result", "Run", "companions", "examine", "title"]
 

@@ -1,4 +1,4 @@
-"""Closed forms of frame indifference: a stress turned with its body, and one compressed along an axis."""
+"""Closed forms of frame indifference: a stress turned with its body, and one compressed along an axis; the turn."""
 
 import numpy as np
 
@@ -33,3 +33,9 @@ def compressed(stretch: float, lam: float, mu: float, rate: str) -> Floats:
         return np.array([(lam + 2 * mu) * (stretch - 1), lateral, lateral])
     stress: Floats = np.array([lam + 2 * mu, lam, lam]) * np.log(stretch)
     return stress
+
+
+def turn(angle: float) -> Floats:
+    """Rotation by an angle, counter-clockwise (2,2)."""
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[c, -s], [s, c]])

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mpm_verify.cases.objectivity.turning_block import turn
+from mpm_verify.cases.objectivity.exact import turn
 from mpm_verify.solver.material_model import Material
 from mpm_verify.solver.state import Floats, Particles
 

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from mpm_verify.cases.harness.checks import Curves
 from mpm_verify.cases.objectivity.axes import OMEGA, Block
+from mpm_verify.cases.objectivity.exact import turn
 from mpm_verify.solver._jit import use_threads
 from mpm_verify.solver.basis.cpdi import Cpdi
 from mpm_verify.solver.boundary import moving
@@ -32,12 +33,6 @@ from mpm_verify.solver.step import Model, advance
 
 SAMPLES = 200  # of each stage, at most
 RAMP = 1.0
-
-
-def turn(angle: float) -> Floats:
-    """Rotation by an angle, counter-clockwise (2,2)."""
-    c, s = np.cos(angle), np.sin(angle)
-    return np.array([[c, -s], [s, c]])
 
 
 def angle_at(t: float) -> float:
