@@ -229,7 +229,7 @@ def read(run: type[RunRecord], key: str, value: Any) -> Any:
     try:
         return TypeAdapter(hint).validate_python(tuple(value) if isinstance(value, list) else value, strict=True)
     except ValidationError as error:
-        usual = next(item.default for item in fields(run) if item.name == key)
+        usual: Any = next(item.default for item in fields(run) if item.name == key)
         pair = isinstance(usual, tuple) and all(isinstance(part, float) for part in usual)
         what = f" must be {len(usual)} numbers" if pair else wrong(error.errors()[0])
         such = f", such as {usual}" if pair or type(usual) in (int, float) else ""
