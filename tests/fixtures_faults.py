@@ -65,6 +65,7 @@ FAULTS: dict[str, Change] = {
     "force of the other sign": force("-1"),
     "force a fifth too large": force("1.2"),
     "force at x": ((FORCE, FORCE.replace("(X,", "(x,")),),
+    "force at (Y, X)": ((FORCE, FORCE.replace("(X,", "(X[:, ::-1],")),),
     "components of the force exchanged": ((FORCE, f"{FORCE}[:, ::-1]"),),
     "force one step late": ((FORCE, FORCE.replace("(step - 1)", "(step - 2)")),),
     "stress twice as large": ((VOLUMES, f"{VOLUMES} * 2"),),

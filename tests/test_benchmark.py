@@ -301,6 +301,18 @@ def test_a_control_that_passes_is_the_alarm(found: tuple[float, ...], says: str)
     assert control(record) == ""
 
 
+def test_parts_of_checks_tell_apart_what_a_study_varies() -> None:
+    """Each refinement has a part of its own, which says in what it is not as the problem has it."""
+    axes = {"material": ("hencky", "hencky:E=2e4", "neo_hookean"), "transfer": ("flip", "apic"), "ppc": (4, 9),
+            "smoothing": ("none", "volumetric"), "method": ("cpdi", "tlmpm")}  # fmt: skip
+    runs = build(Asked("benchmark", {"problem": ("self_weight",), **axes}, quick=True), "").runs
+    told = {case.part(series.first) for series in case.collect(runs)}
+    assert len(told) == 48
+    assert {"self_weight, cpdi", "self_weight, tlmpm, neo_hookean, 9 per cell, apic"} <= told
+    assert "self_weight, cpdi volumetric, E=20000" in told
+    assert case.part(replace(runs[0], offset=(0.25, 0.0), courant=0.2)).endswith("courant 0.2, offset 0.25,0")
+
+
 def test_a_label_leaves_out_what_goes_with_the_problem(tmp_path: Path) -> None:
     for materials, told in (((), "CPDI, 4 per cell, problem self_weight"), (("hencky", "neo_hookean"), "material")):
         more = {"material": materials} if materials else {"problem": ("self_weight", "cell_crossing")}

@@ -245,6 +245,16 @@ def test_json_has_no_nan_and_junit_every_check(tmp_path: Path, capsys: pytest.Ca
     assert [[child.tag for child in case] for case in suite] == [[], ["failure"], ["error"], ["error"]]
 
 
+def test_names_in_junit_are_unique(tmp_path: Path) -> None:
+    """Servers show one test of a name; checks of a case of one's own may share theirs."""
+    run(tmp_path, GOOD, BAD, replace(GOOD, found=2.0), replace(GOOD, group="shear"), GOOD, junit=tmp_path / "out.xml")
+    suite = ElementTree.parse(tmp_path / "out.xml").getroot()
+    named = [(case.attrib["classname"], case.attrib["name"]) for case in suite]
+    assert [name for _, name in named] == ["stress", "shear stress", "stress (2)", "stress", "stress (3)"]
+    assert len(set(named)) == 5
+    assert [len(case) for case in suite] == [0, 1, 1, 0, 0]
+
+
 def test_what_is_wrong_with_the_input_is_one_line(tmp_path: Path) -> None:
     """Before anything is computed."""
     with pytest.raises(typer.TyperException, match="cannot write --junit"):

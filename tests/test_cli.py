@@ -14,6 +14,7 @@ from typing import Any
 
 import fixtures_study as fixtures
 import pytest
+from typer.main import get_command
 
 from mpm_verify.cases.harness.shipped import shipped
 from mpm_verify.cases.harness.store import Store
@@ -119,7 +120,7 @@ BAD = {
     "courant with a comma too many": (["--courant", "0.4,"], ["--courant '0.4,'", "0.4,0.2,0.1"]),
     "replicates 0": (["--replicates", "0"], ["replicates = 0", NUMBERS, "from 1 to 64"]),
     "replicates 65": (["--replicates", "65"], ["replicates = 65", NUMBERS, "from 1 to 64"]),
-    "replicates no number": (["--replicates", "some"], ["--replicates", "integer"]),
+    "replicates no number": (["--replicates", "some"], ["--replicates", "whole number"]),
     "courant no number": (["--courant", "fast"], ["--courant", "number"]),
     "unknown transfer": (["--transfer", "nope"], ["'nope'", "apic, flip, fmpm, pic"]),
     "fraction of flip 2": (["--transfer", "flip:fraction=2"], ["fraction = 2", "above 0", "up to 1"]),
@@ -131,7 +132,7 @@ BAD = {
     "unknown stress order": (["--stress", "first"], ["'first'", "usl, musl, usf"]),
     "jobs 0": (["--jobs", "0"], ["--jobs", NUMBERS, "from 1"]),
     "jobs negative": (["--jobs", "-1"], ["--jobs", NUMBERS, "from 1"]),
-    "jobs no number": (["--jobs", "all"], ["--jobs", "integer"]),
+    "jobs no number": (["--jobs", "all"], ["--jobs", "whole number"]),
     "threads 0": (["--threads", "0"], ["--threads", NUMBERS, "from 1"]),
     "unknown option": (["--colour"], ["--colour"]),
     "option without its value": (["--cells"], ["--cells"]),
@@ -469,3 +470,33 @@ def test_nobody_listens() -> None:
     run = subprocess.run([*VERIFY, "list"], stdout=writer, stderr=subprocess.PIPE, text=True, timeout=60)
     os.close(writer)
     assert (run.returncode, run.stderr) == (0, "")
+
+
+# ---- numbers that are none
+
+
+def numeric() -> list[tuple[str, str]]:
+    """Command and option of all options that take one number."""
+    commands = get_command(application()).commands  # type: ignore[attr-defined]
+    return [
+        (name, max(option.opts, key=len))
+        for name, command in commands.items()
+        for option in command.params
+        if getattr(option, "type_descriptor", None) and option.type_descriptor.annotation in (int, float)
+    ]
+
+
+def test_a_number_that_cannot_be_read_is_told_plainly(verify: Verify) -> None:
+    """Of every option that the parser itself reads; not in the words of the library that reads it."""
+    found = numeric()
+    assert {("judge", "--order"), ("export", "--cells"), ("mms", "--threads"), ("power", "--seed")} <= set(found)
+    for command, option in found:
+        line = verify(command, option, "abc").line
+        assert f"{option} 'abc' cannot be read; write a " in line
+        assert "number, such as " in line
+        assert "Input should" not in line
+
+
+def test_what_the_parser_refuses_names_the_help(verify: Verify) -> None:
+    assert verify("mms", "--staggered", "maybe").line.endswith("(maybe); verify mms --help says more\n")
+    assert verify("example").line == "verify: Missing argument 'LANGUAGE'; verify example --help says more\n"

@@ -392,3 +392,16 @@ def test_the_transcript_of_the_page(verify: Call, monkeypatch: pytest.MonkeyPatc
         assert [line.rstrip() for line in out.strip().splitlines()] == [
             line.rstrip() for line in rest.strip().splitlines()
         ]
+
+
+def test_local_orders_of_json_run_over_the_pairs_of_levels(verify: Call) -> None:
+    """Null on both sides of an error of zero and of a level that failed, so that the k-th is of levels k and k + 1."""
+    for middle, k in (("0", 1), ("nan", 2)):
+        errors = ["1e-2", "4e-3", "1e-3", "2.5e-4", "6.25e-5"]
+        errors[k] = middle
+        lines = [f"{4 * 2**level},{error}" for level, error in enumerate(errors)]
+        Path("errors.csv").write_text("\n".join(["cells,error", *lines]))
+        _, out, _ = verify("judge", "errors.csv", "--order", "2", "--json", "--no-page")
+        (row,) = json.loads(out)["verdicts"]
+        assert [order is None for order in row["local_orders"]] == [n in (k - 1, k) for n in range(4)]
+        assert row["local_orders"][3] == pytest.approx(2.0)

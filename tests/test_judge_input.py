@@ -244,3 +244,18 @@ def test_replicates_of_a_level_are_its_own(tmp_path: Path) -> None:
     assert [(run.cells, run.offset, run.number) for run in made.runs] == [
         (8.0, (0.0, 0.0), 1.0), (8.0, (1.0, 0.0), 2.0), (16.0, (0.0, 0.0), 3.0),
     ]  # fmt: skip
+
+
+def test_a_size_and_a_count_that_contradict_each_other_are_refused(tmp_path: Path) -> None:
+    """Cells along a side, of all the plane or of all space may stand beside h, and sizes may be rounded."""
+    sides = [8, 12, 16, 24, 32]
+    for power in (1, 2, 3):
+        rows = [(f"{1 / n:.2g}", n**power) for n in sides]
+        text = "\n".join(f"{count},{h},{1e-2 / n}" for (h, count), n in zip(rows, sides, strict=True))
+        assert len(points(f"cells,h,error\n{text}", tmp_path)) == 5
+    wrong = "\n".join(f"{n},{1 / (20 if n == 16 else n)},{1e-2 / n}" for n in sides)
+    with pytest.raises(ValueError, match=r"line 4: h = '0\.05' and ncells = 16 contradict each other: h times") as said:
+        points(f"ncells,h,error\n{wrong}", tmp_path)
+    assert "is 1 elsewhere; mend one, or leave a column out" in str(said.value)
+    assert "\n" not in str(said.value)
+    assert len(points(f"elements,h,error\n{wrong}", tmp_path)) == 5  # of an adapted mesh they may be any number

@@ -19,7 +19,7 @@ from rich.console import Console
 
 import mpm_verify as mv
 from mpm_verify.cases.mms.exact import manufactured
-from mpm_verify.cases.mms.external.balance import Balance, functions
+from mpm_verify.cases.mms.external.balance import SHORT, WAVES, Balance, functions
 from mpm_verify.cases.mms.external.evidence import Evidence
 from mpm_verify.cases.mms.external.hints import hints
 from mpm_verify.cases.solvers.answer import Frame
@@ -32,6 +32,7 @@ from mpm_verify.verify.terminal import table
 DOCUMENT = Path(__file__).parent.parent / "docs" / "own-solver.md"
 SHEAR, BUMP, ALIGNED, SWIRL = "clamped_shear:G=1e-6", "bump", "axis_aligned:A=1e-6", "swirl"
 CELLS = 12
+ALL_WAVES = (*WAVES, SHORT)
 
 # what is hinted at on clamped_shear:G=1e-6 with 12 cells: names with the number that each has, and how near it is
 HINTED: dict[str, dict[str, tuple[float, float]]] = {
@@ -41,6 +42,7 @@ HINTED: dict[str, dict[str, tuple[float, float]]] = {
     "force a fifth too large": {"force_factor": (1.2, 0.02)},
     "force at x": {},
     "components of the force exchanged": {"force_swapped": (1.0, 0.05)},
+    "force at (Y, X)": {"force_at_YX": (1.0, 0.05)},
     "force one step late": {"force_lag": (1.0, 0.1)},
     "stress twice as large": {"stress_factor": (2.0, 0.04)},
     "FLIP ratio ignored (PIC)": {"viscous": (0.19, 0.02)},
@@ -89,6 +91,8 @@ def test_a_sound_solver_gets_no_hint(solution: str) -> None:
     ("fault", "solution", "name"),
     [
         ("force one step late", BUMP, "force_lag"),
+        ("force at (Y, X)", BUMP, "force_at_YX"),
+        ("force at (Y, X)", SWIRL, "force_at_YX"),
         ("FLIP ratio ignored (PIC)", ALIGNED, "viscous"),
         ("F advanced by L transposed", SWIRL, "L_transposed"),
         ("F written by columns", SWIRL, "F_transposed"),
@@ -124,6 +128,7 @@ REFUTED = {  # quantities that fail with --as mpm on 6, 8, 12 and 16 cells of cl
     "none": set[str](),
     "force never added": ALL,
     "components of the force exchanged": ALL,
+    "force at (Y, X)": ALL,
     "force one step late": ALL,
     "FLIP ratio ignored (PIC)": ALL,
     "F advanced twice": ALL,
@@ -260,12 +265,12 @@ def test_gradients_of_particles_are_exact_for_parabolas_and_of_second_order() ->
 def test_test_functions_vanish_at_the_edges_and_have_their_derivatives() -> None:
     low, high, h = np.array([0.0, 1.0]), np.array([2.0, 4.0]), 1e-5
     edge = np.array([[0.0, 2.0], [2.0, 3.0], [1.0, 1.0], [0.3, 4.0]])
-    w, gradient, _ = functions(edge, low, high)
+    w, gradient, _ = functions(edge, low, high, ALL_WAVES)
     assert np.abs(w).max() < 1e-12
     assert np.abs(gradient).max() < 1e-12
     X = np.random.default_rng(1).uniform(low + 0.1, high - 0.1, (9, 2))
-    w, gradient, laplacian = functions(X, low, high)
-    beside = [[functions(X + s * h * axis, low, high)[0] for s in (1, -1)] for axis in np.eye(2)]
+    w, gradient, laplacian = functions(X, low, high, ALL_WAVES)
+    beside = [[functions(X + s * h * axis, low, high, ALL_WAVES)[0] for s in (1, -1)] for axis in np.eye(2)]
     for k, (ahead, behind) in enumerate(beside):
         np.testing.assert_allclose(gradient[..., k], (ahead - behind) / (2 * h), atol=1e-8)
     total = sum(ahead + behind - 2 * w for ahead, behind in beside) / h**2

@@ -249,11 +249,11 @@ EXPECTED = 'return Expectation(2.0, source="the remainder of the midpoint rule")
 GIVEN = 'return Result(run=run, digest=run.digest, status="finished", errors={"integral": {"relative": error}}), {}'
 BEFORE = {  # nothing is made
     "expectation": (EXPECTED, "return 2", "expectation must return an Expectation or None, not 2"),
-    "order": (EXPECTED, "return Expectation(order='x')", "with order = 'x': input should be a valid number"),
+    "order": (EXPECTED, "return Expectation(order='x')", "with order = 'x' must be a number"),
     "band": (EXPECTED, "return Expectation(2.0, below=-1)", "line 36: ValueError: below = -1"),
     "AXES": ('{"cells"', '{"celsl"', "AXES has 'celsl', which is no field of Run (did you mean cells?)"),
     "values of AXES": ("(8, 16, 32, 64)", "8", "AXES has 'cells': 8; write values, such as (8, 16)"),
-    "kinds of values": ("(8, 16,", "('a', 16,", "cells = 'a': input should be a valid integer"),
+    "kinds of values": ("(8, 16,", "('a', 16,", "cells = 'a' must be a whole number"),
     "JUDGED": ('"relative"),)', '"max"),)', "JUDGED has ('integral', 'max'), and NORMS has relative"),
     "QUANTITIES": ('("integral",), (', '"integral", (', "QUANTITIES = integral must be words with a comma"),
     "title": ('return "Midpoint rule"', "pass", "title must return a text, not None"),
@@ -263,7 +263,7 @@ BEFORE = {  # nothing is made
 IN_A_RUN = {
     "quantity": ('errors={"integral"', 'errors={"w"', "without errors['integral']['relative']; it has {'w':"),
     "another run": ("run=run, digest", "run=Run(), digest", "execute returns the Result of another run"),
-    "status": ('"finished"', '"ok"', "Result cannot be stored: status = 'ok': input should be 'finished' or 'failed'"),
+    "status": ('"finished"', '"ok"', "Result cannot be stored: status = 'ok' must be 'finished' or 'failed'"),
     "failed": ('"finished"', '"failed"', "has no failure"),
     "no arrays": (GIVEN, GIVEN[:-4], "execute must return (Result, arrays), not Result("),
     "nothing": (GIVEN, "pass", "execute must return (Result, arrays), not None"),

@@ -24,6 +24,7 @@ from mpm_verify.reports.components import audited
 from mpm_verify.reports.components.cards import cards
 from mpm_verify.reports.figures.error_field import choose, domains
 from mpm_verify.reports.frames import read
+from mpm_verify.reports.pages import mms
 from mpm_verify.reports.pages.mms import page as draw
 from mpm_verify.reports.sentences import failures, verdicts
 from mpm_verify.solver.failure import Failure, FailureKind
@@ -330,3 +331,17 @@ def test_words_of_expectations_and_failures() -> None:
         == "det F ≤ 0 at step 3, particle 7 in cell (1, 2)"
     )
     assert words.order(-0.476) == f"{words.MINUS}0.48"
+
+
+def test_where_nothing_finished_a_card_says_so_and_nothing_of_what_it_sees(tmp_path: Path) -> None:
+    record = read(fixtures.make(tmp_path, ("cpdi",)))
+    assert all(card.finished for card in cards(record))
+    failed = {key: replace(r, status="failed", errors={}, failure=Failure(FailureKind.INVERTED, 3))
+              for key, r in record.results.items()}  # fmt: skip
+    (card, *more) = cards(replace(record, results=failed))
+    assert not any(one.finished or one.unseen or one.seen for one in (card, *more))
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(mms, "cards", lambda record: [card])
+        page = text(render(tmp_path).read_text())
+    assert "Nothing finished. What a study of this solution sees" in page
+    assert "Not seen here" not in page

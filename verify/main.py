@@ -159,10 +159,31 @@ def defect(error: BaseException) -> int:
 
 
 def message_of(error: Exception) -> str:
-    """Line of an error of Typer's; of an option that is not there, with those that are near to it."""
+    """Line of an error of Typer's: of an option that is not there with those that are near to it, else of a value."""
     if near := getattr(error, "possibilities", None):
         return f"no option {getattr(error, 'option_name', '')} (did you mean {' or '.join(near)}?)"
-    return error.format_message() if hasattr(error, "format_message") else str(error)
+    if said := unreadable(error):
+        return said
+    line = error.format_message() if hasattr(error, "format_message") else str(error)
+    context = getattr(error, "ctx", None)
+    command = context.info_name if context is not None and context.parent is not None else ""
+    return f"{line.removesuffix('.')}; verify {command} --help says more" if command else line
+
+
+def unreadable(error: Exception) -> str:
+    """Line of a value that cannot be read, and what to type instead; empty of another error."""
+    from pydantic import ValidationError
+
+    parameter, cause = getattr(error, "param", None), error.__cause__
+    if parameter is None or not isinstance(cause, ValidationError):
+        return ""
+    from mpm_verify.cases.harness.invalid import KINDS
+
+    first = cause.errors()[0]
+    kind, usual = KINDS.get(first["type"], ""), parameter.default
+    usual = usual if type(usual) in (int, float) else 2
+    what = f"{kind}, such as {usual:g}" if kind.endswith("number") else kind or first["msg"]
+    return f"{max(parameter.opts, key=len)} {first['input']!r} cannot be read; write {what}"
 
 
 def told(text: str, code: int) -> int:

@@ -5,12 +5,14 @@ JSON is a list of objects, one a row, or an object of columns. How a CSV file ma
 
 import json
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
 from math import inf, isfinite
 from pathlib import Path
 from typing import Any
 
+from mpm_verify.cases.any_code import sizes
 from mpm_verify.cases.harness import sheet
 from mpm_verify.cases.harness.sheet import Sheet
 
@@ -113,6 +115,7 @@ def read(path: Path, exact: bool = True) -> Table:
     word = "row" if as_json else "line"
     cells = Cells(found, taken, word)
     rows = tuple(row(cells, line, texts, number) for line, texts in found.rows)
+    check_sizes(cells, found.rows)
     unused = tuple(name for at, name in enumerate(found.header) if at not in taken.values() and name)
     by = "h" if "h" in taken else "cells"
     return Table(path, by, rows, {role: found.header[at] for role, at in taken.items()}, unused, word)
@@ -241,6 +244,21 @@ def level(cells: Cells, line: int, texts: list[str]) -> float:
     if size is None or not 0 < size < inf or not isfinite(1 / size):
         raise cells.complaint(line, role, texts, "must be a cell size above zero, such as 0.0625 or 1/16")
     return 1 / size
+
+
+def check_sizes(cells: Cells, rows: Sequence[tuple[int, list[str]]]) -> None:
+    """Raise ValueError where a column of cells, which is not read beside h, says another size than h does."""
+    names = [plain(name) for name in cells.sheet.header]
+    at = next((k for k, name in enumerate(names) if name in sizes.CELLS), None)
+    if at is None or "h" not in cells.taken:
+        return
+    counts = [(line, texts, sheet.number(texts[at])) for line, texts in rows]
+    known = [(line, texts, count) for line, texts, count in counts if count and 0 < count < inf]
+    if found := sizes.apart([(1 / level(cells, line, texts), count) for line, texts, count in known]):
+        line, texts, _ = known[found[0]]
+        name = cells.sheet.header[at]
+        usual = f"h times {name} is {found[1]:.3g} elsewhere; mend one, or leave a column out"
+        raise cells.complaint(line, "h", texts, f"and {name} = {texts[at].strip()} contradict each other: {usual}")
 
 
 def measured(cells: Cells, line: int, texts: list[str], role: str) -> float | None:

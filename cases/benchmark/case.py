@@ -27,6 +27,7 @@ from mpm_verify.solver.plugins import (
     available,
     create,
     label,
+    split,
 )
 from mpm_verify.solver.plugins import canonical as canonical_name
 
@@ -108,9 +109,32 @@ def examine(study: Study[Run], results: Mapping[str, Result], store: Store) -> B
 
 
 def part(run: Run) -> str:
-    """Group of the checks of a refinement, such as `self_weight, cpdi`."""
+    """Group of the checks of a refinement, such as `self_weight, cpdi`, with all that is not as usual."""
     smoothed = "" if run.smoothing == Run.smoothing else f" {label(run.smoothing)}"
-    return f"{label(run.problem)}, {label(run.method)}{smoothed}" + ", failing control" * run.control
+    named = f"{label(run.problem)}, {label(run.method)}{smoothed}"
+    return ", ".join([named, *unusual(run)]) + ", failing control" * run.control
+
+
+def unusual(run: Run) -> list[str]:
+    """What a run has that is not usual of its problem: material, particles per cell, transfer, time step, positions."""
+    problem = run.stated
+    material = completed(problem.material, problem.constants)
+    return [
+        *([apart(run.material, material)] if run.material not in ("", material) else []),
+        *([f"{run.ppc} per cell"] if run.ppc != problem.ppc else []),
+        *([label(run.transfer)] if run.transfer != Run.transfer else []),
+        *([f"courant {run.courant:g}"] if run.courant != Run.courant else []),
+        *(["offset {:g},{:g}".format(*run.offset)] if any(run.offset) else []),
+    ]
+
+
+def apart(material: str, usual: str) -> str:
+    """Material in short: its name if that is another, and the parameters that are."""
+    (name, rest), (other, given) = split(material), split(usual)
+    here, there = (dict(item.partition("=")[::2] for item in one.split(",") if item) for one in (rest, given))
+    told = [f"{key}={value}" for key, value in here.items() if there.get(key) != value]
+    told += [f"usual {key}" for key in there.keys() - here.keys()] if name == other else []
+    return " ".join(([label(name)] if name != other or not told else []) + told)
 
 
 def checks(held: Held, series: Series, results: Mapping[str, Result]) -> list[Check]:

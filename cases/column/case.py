@@ -6,6 +6,7 @@ from dataclasses import replace
 from mpm_verify.cases.column.exam import examine
 from mpm_verify.cases.column.execute import material_of, setup, steps_of
 from mpm_verify.cases.column.run import ColumnResult, ColumnRun
+from mpm_verify.cases.harness.build import Asked
 from mpm_verify.solver.plugins import METHODS, create, label
 
 __all__ = ["Result", "Run", "check", "examine"]
@@ -16,6 +17,20 @@ Run, Result = ColumnRun, ColumnResult
 def title(runs: Sequence[ColumnRun]) -> str:
     """Title of a study of columns."""
     return "Collapse of granular columns" if len(runs) > 1 else "Collapse of a granular column"
+
+
+def parts(asked: Asked) -> list[Asked]:
+    """The study as it is asked for. Raises ValueError for a value that none of its runs would use."""
+    given = asked.values
+    walls = {*given.get("floor", (Run.floor,)), *given.get("left", (Run.left,))}
+    if given.get("mu") and "frictional" not in walls:
+        raise ValueError(
+            f"mu = {given['mu'][0]} has no frictional floor or wall; add --floor frictional, or leave --mu out"
+        )
+    if given.get("damping_kind") and not any(given.get("damping", (Run.damping,))):
+        kind = given["damping_kind"][0]
+        raise ValueError(f"damping_kind = {kind!r} has no damping; add --damping 0.05, or leave --damping-kind out")
+    return [asked]
 
 
 def check(runs: Sequence[ColumnRun]) -> None:

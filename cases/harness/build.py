@@ -10,7 +10,8 @@ from typing import Any, cast, get_type_hints
 
 from pydantic import TypeAdapter, ValidationError
 
-from mpm_verify.cases.harness.contract import Case, case_named, invalid
+from mpm_verify.cases.harness.contract import Case, case_named
+from mpm_verify.cases.harness.invalid import invalid, wrong
 from mpm_verify.cases.harness.refinement import complete, elsewhere, refines
 from mpm_verify.cases.harness.study import QuantityPlan, RunRecord, Study, head
 from mpm_verify.cases.judging.records import Expectation
@@ -228,7 +229,11 @@ def read(run: type[RunRecord], key: str, value: Any) -> Any:
     try:
         return TypeAdapter(hint).validate_python(tuple(value) if isinstance(value, list) else value, strict=True)
     except ValidationError as error:
-        raise ValueError(f"{key} = {value!r}: {invalid(error).partition(': ')[2]}") from None
+        usual: Any = next(item.default for item in fields(run) if item.name == key)
+        pair = isinstance(usual, tuple) and all(isinstance(part, float) for part in usual)
+        what = f" must be {len(usual)} numbers" if pair else wrong(error.errors()[0])
+        such = f", such as {usual}" if pair or type(usual) in (int, float) else ""
+        raise ValueError(f"{key} = {value!r}{what}{such}") from None
 
 
 def axes(runs: Sequence[RunRecord]) -> tuple[str, ...]:

@@ -26,7 +26,7 @@ from pathlib import Path
 from types import ModuleType, SimpleNamespace
 from typing import Any
 
-from pydantic import PydanticUserError, TypeAdapter, ValidationError
+from pydantic import PydanticUserError, TypeAdapter
 
 from mpm_verify.cases.harness.study import REFINED, ResultRecord, RunRecord, Study
 from mpm_verify.cases.judging.records import Expectation
@@ -262,14 +262,6 @@ def told(name: str, word: str, function: Callable[..., Any]) -> Callable[..., An
         return found
 
     return call
-
-
-def invalid(error: ValidationError) -> str:
-    """First thing that is wrong with a record: `order = 'x': input should be a valid number`."""
-    first = error.errors()[0]
-    where, says = ".".join(map(str, first["loc"])), first["msg"].removeprefix("Value error, ")
-    value = f"{where} = {shortened(repr(first['input']))}" if where else "its values"
-    return f"{value}: {says[0].lower()}{says[1:]}"
 
 
 def adapters(name: str) -> tuple[TypeAdapter[Any], TypeAdapter[Any]]:

@@ -22,7 +22,8 @@ from zipfile import BadZipFile
 import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
-from mpm_verify.cases.harness.contract import adapters, invalid
+from mpm_verify.cases.harness.contract import adapters
+from mpm_verify.cases.harness.invalid import invalid
 from mpm_verify.cases.harness.study import FORMAT, Arrays
 from mpm_verify.solver.plugins import CASES, available, is_file
 

@@ -13,7 +13,7 @@ from typing import Annotated, Any, Literal, get_args
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
-from mpm_verify.cases.harness.contract import invalid
+from mpm_verify.cases.harness.invalid import invalid
 from mpm_verify.cases.solvers.components import QUANTITIES
 from mpm_verify.cases.solvers.levels import FARTHEST, USUAL, Levels
 from mpm_verify.solver.plugins import meant

@@ -46,6 +46,7 @@ class Card:
     unseen: str
     seen: tuple[str, ...]
     edges: str = ""
+    finished: bool = True  # whether a level did: what a solution cannot see matters only then
 
 
 def cards(record: Record) -> list[Card]:
@@ -81,6 +82,7 @@ def _card(record: Record, found: Finding) -> Card:
     headline = (STALLS if falls else DIVERGES if diverges else PLAIN)[v.outcome]
     grows = divergence(record, found) if diverges and not falls and v.outcome is Outcome.PASS else ""
     badge = headlines.badge(found)
+    finished = not all(each.ended for each in found.levels)
     return Card(
         str(v.outcome),
         badge,
@@ -92,9 +94,10 @@ def _card(record: Record, found: Finding) -> Card:
         commands.command(record.study, found, record.store.folder),
         grows,
         short(found),
-        audited.short(record, plan.run.solution),
-        tuple(audited.seen(record, plan.run.solution)),
+        audited.short(record, plan.run.solution) if finished else "",
+        tuple(audited.seen(record, plan.run.solution)) if finished else (),
         audited.edges(record, (plan.run.solution,)),
+        finished,
     )
 
 

@@ -13,12 +13,13 @@ from typing import Any
 
 from pydantic import TypeAdapter
 
-from mpm_verify.cases.harness.axes import particle_axes, position_axes, time_axes
+from mpm_verify.cases.harness.axes import middle, particle_axes, position_axes, time_axes
 from mpm_verify.cases.harness.checks import Check
 from mpm_verify.cases.harness.contract import case_named
 from mpm_verify.cases.harness.controls import Control
 from mpm_verify.cases.harness.study import ResultRecord
 from mpm_verify.cases.harness.verdicts import Finding
+from mpm_verify.cases.judging.fit import local
 from mpm_verify.cases.judging.records import Ended
 from mpm_verify.cases.judging.stall import Cause, Stall
 from mpm_verify.reports.frames import USUAL, Record, joined
@@ -80,13 +81,16 @@ class StallRow:
 
 @dataclass(frozen=True)
 class ShownRow:
-    """Measurements of a quantity; lists run over the levels, coarse to fine, null where there is none."""
+    """Measurements of a quantity; lists run over the levels, coarse to fine, null where there is none.
+
+    `local_orders` run over the pairs of levels next to each other: null where an error is zero or not there.
+    """
 
     quantity: str
     norm: str
     observed: float | None
     interval: list[float] | None
-    local_orders: list[float]
+    local_orders: list[float | None]
     crossings: list[float | None]
     stall: StallRow | None
 
@@ -218,10 +222,15 @@ def shown(record: Record, finding: Finding) -> Row:
     """Row of the measurements of a quantity, judged or not."""
     plan, v = finding.plan, finding.verdict
     row = ShownRow(
-        plan.quantity, plan.norm, v.observed, None if v.interval is None else list(v.interval), list(v.local_orders),
+        plan.quantity, plan.norm, v.observed, None if v.interval is None else list(v.interval), pairs(finding),
         list(finding.crossings), stall(finding.stall) if finding.stall else None,
     )  # fmt: skip
     return joined(record.columns(plan.run), asdict(row))
+
+
+def pairs(finding: Finding) -> list[float | None]:
+    """Local order of each pair of levels next to each other."""
+    return local([(each.h, 0.0 if each.ended else middle(each.errors)) for each in finding.levels])
 
 
 def stall(found: Stall) -> StallRow:

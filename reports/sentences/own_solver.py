@@ -23,6 +23,7 @@ HINTS = {  # in the order in which they are said
     "time_scale": "Positions fit at {value:.5g} times their time: is dt rounded, or the number of steps another?",
     "force_at_x": "The motion fits a body force that is taken at the position x: it is a function of X.",
     "force_swapped": "The motion fits a body force whose components are exchanged: x comes first.",
+    "force_at_YX": "The motion fits a body force that is taken at (Y, X): its first coordinate is X.",
     "force_lag": "The motion fits a body force of {lag}: is it that of the start of the step?",
     "stress_lag": "The motion fits a stress of {lag}: from which level of F is it?",
     "viscous": "Velocities are smoothed in each step, as by a viscosity of {value:.2g} dx²/dt: so does PIC, and a FLIP "

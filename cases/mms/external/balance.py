@@ -18,7 +18,9 @@ import numpy as np
 from mpm_verify.cases.mms.external.evidence import Evidence
 from mpm_verify.solver.state import Floats
 
-WAVES = ({0: 0.5, 2: -0.5}, {1: 0.25, 3: -0.25})  # sin^2 and sin^2 cos, as sums of cosines of pi k xi
+Waves = tuple[dict[int, float], ...]
+WAVES: Waves = ({0: 0.5, 2: -0.5}, {1: 0.25, 3: -0.25})  # sin^2 and sin^2 cos, as sums of cosines of pi k xi
+SHORT = {0: -0.25, 2: 0.5, 4: -0.25}  # sin^2 cos 2
 
 
 @dataclass(frozen=True)
@@ -32,10 +34,10 @@ class Tried:
 class Balance:
     """Momentum balance of an answer in a rectangle; T test functions, K output times."""
 
-    def __init__(self, evidence: Evidence) -> None:
+    def __init__(self, evidence: Evidence, waves: Waves = WAVES) -> None:
         self.of = evidence
-        record = evidence.case.record
-        self.w, self.gradient, self.laplacian = functions(evidence.X, np.array(record.lower), np.array(record.upper))
+        low, high = np.array(evidence.case.record.lower), np.array(evidence.case.record.upper)
+        self.w, self.gradient, self.laplacian = functions(evidence.X, low, high, waves)
         self.m, self.times, self.dt = evidence.case.particles["m"], evidence.times, evidence.dt
 
     def momentum(self, values: Floats) -> Floats:
@@ -49,12 +51,12 @@ class Balance:
         return found
 
     def force(self, lag: float = 0.0, at: Floats | None = None, swapped: bool = False) -> Floats:
-        """Moments B (1+K,T) of the body force, `lag` steps before, at X or at positions (1+K,P,2).
+        """Moments B (1+K,T) of the body force, `lag` steps before, at X or at positions (P,2) or (1+K,P,2).
 
         `swapped` exchanges its components.
         """
-        b, X = self.of.exact.b, self.of.X
-        fields = [b(X if at is None else at[k], t - lag * self.dt) for k, t in enumerate(self.times)]
+        where = np.broadcast_to(self.of.X if at is None else at, self.of.u.shape)
+        fields = [self.of.exact.b(where[k], t - lag * self.dt) for k, t in enumerate(self.times)]
         return self.momentum(np.stack(fields)[..., ::-1] if swapped else np.stack(fields))
 
     @cached_property
@@ -100,7 +102,12 @@ class Balance:
 
     def tried(self) -> dict[str, Tried]:
         """Each candidate fitted alone."""
-        return {name: fitted(self.left, term) for name, term in self.candidates().items()}
+        found = {name: fitted(self.left, term) for name, term in self.candidates().items()}
+        return {**found, "force_at_YX": Balance(self.of, (*WAVES, SHORT)).exchanged()}
+
+    def exchanged(self) -> Tried:
+        """The body force at (Y, X). Where u is even about the middle of both sides, only short waves see it."""
+        return fitted(self.left, hats(self.force(at=self.of.X[:, ::-1]) - self.force(), self.times))
 
     def start(self) -> tuple[Tried, Tried]:
         """Velocity that the first displacements begin with, in steps late: by acceleration, and by velocity alone."""
@@ -118,12 +125,12 @@ def fitted(left: Floats, term: Floats) -> Tried:
     return Tried(value, float(np.linalg.norm(left - value * term)) / whole)
 
 
-def functions(X: Floats, lower: Floats, upper: Floats) -> tuple[Floats, Floats, Floats]:
+def functions(X: Floats, lower: Floats, upper: Floats, waves: Waves = WAVES) -> tuple[Floats, Floats, Floats]:
     """Test functions of a rectangle at X (P,2): values (T,P,2), gradients (T,P,2,2), Laplacians (T,P,2)."""
     xi, per = (X - lower) / (upper - lower), np.pi / (upper - lower)
     w, gradient, laplacian = [], [], []
-    for first in WAVES:
-        for second in WAVES:
+    for first in waves:
+        for second in waves:
             f, g = cosines(first, xi[:, 0]), cosines(second, xi[:, 1])
             bent = per[0] ** 2 * f[2] * g[0] + per[1] ** 2 * f[0] * g[2]
             slope = np.stack([per[0] * f[1] * g[0], per[1] * f[0] * g[1]], axis=-1)

@@ -1,7 +1,7 @@
 """Hints on why an answer is wrong: causes and readings that are measured on its files, the best one first.
 
 What moved the body is asked in turn, and one cause is named: particles in another order, nothing that moves, positions
-of another time, walls, the forces, the start. F, volume and stress are held against the answer itself, so no cause of a
+of another time, the forces, walls, the start. F, volume and stress are held against the answer itself, so no cause of a
 wrong motion makes a hint of them. Time levels of v and F are asked for only where the motion has no cause.
 """
 
@@ -54,7 +54,7 @@ def hints(exact: Manufactured, case: Exported, frames: dict[int, Frame], levels:
 def explained(e: Evidence) -> dict[str, float]:
     """Causes and readings of an answer that is worth reading."""
     found = motion.single(e)
-    moved = motion.order(e) or motion.still(e) or motion.displacements(e) or motion.walls(e) or by_time(e)
+    moved = motion.order(e) or motion.still(e) or motion.displacements(e) or moved_by(e)
     if moved.keys() & set(ALONE):
         return moved | ({} if moved.keys() & set(MOTIONLESS) else found)
     of_F = consistency.of_F(e)
@@ -72,18 +72,18 @@ def explained(e: Evidence) -> dict[str, float]:
     return moved | rest | found
 
 
-def by_time(e: Evidence) -> dict[str, float]:
-    """Another time of the positions, or a force, stress or start that the momentum balance names.
+def moved_by(e: Evidence) -> dict[str, float]:
+    """Another time of the positions, or a force or stress that the momentum balance names: the one that leaves less.
 
-    The one that leaves less. The balance is taken of rectangles in plane strain.
+    Else walls, which take no part in that balance, or the start. The balance is taken of rectangles in plane strain.
     """
     found, left = motion.other_times(e)
     if e.case.record.body != "rectangle" or e.around or len(e.frames) < FEW or not e.stressed:
-        return found
+        return found or motion.walls(e)
     balance = Balance(e)
     tried = balance.tried()
     cause, rest = motion.forces(tried, e.case.record.steps)
-    return (cause if rest < left else found) or motion.start(balance, tried)
+    return (cause if rest < left else found) or motion.walls(e) or motion.start(balance, tried)
 
 
 def other_levels(e: Evidence) -> dict[str, float]:

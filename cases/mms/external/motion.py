@@ -156,7 +156,7 @@ def forces(tried: dict[str, Tried], steps: int) -> tuple[dict[str, float], float
     if factors[factor].left < LEFT and abs(factors[factor].value) > FACTOR:
         explained = factor == "stress_factor" and of_F is not None and of_F.left < LEFT and abs(of_F.value - 1) < NEARLY
         return {"stress_of_F" if explained else factor: 1 + factors[factor].value}, factors[factor].left
-    for name in ("force_swapped", "force_at_x"):
+    for name in ("force_swapped", "force_at_YX", "force_at_x"):
         if tried[name].left < BETTER and abs(tried[name].value - 1) < NEARLY:
             return {name: tried[name].value}, tried[name].left
     least = {"viscous": LOST, "force_lag": LATE, "stress_lag": LATE, "damped": DAMPED / steps}
