@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import StrEnum
 
-from mpm_verify.solver.sides import SIDES
+from mpm_verify.solver.sides import SOLID_SIDES
 
 Numbers = dict[str, float]
 OPEN = {"pulled": 1.0, "prescribed": 2.0, "found": 3.0}  # kinds of edges; the last: pulled, as it is nothing else
@@ -147,7 +147,7 @@ def judge(measured: Numbers) -> tuple[BlindSpot, ...]:
     """One BlindSpot for each rule, in the order of the rules, and what holds for every solution last."""
     state = tuple(name for name in ("dimension", "axisymmetric") if name in measured)  # of plane strain none is told
     known = {**measured, "finest": float(SOLID_FINEST if measured.get("dimension") == 3 else FINEST)}
-    moves = tuple(side for side in SIDES if side in measured)  # pulled or prescribed
+    moves = tuple(side for side in SOLID_SIDES if side in measured)  # pulled or prescribed
     more = {BlindSpotCode.WALLS: moves}
     rules = (
         BlindSpot(code, blind(known), {name: known[name] for name in (*names, *more.get(code, ()), *state)})

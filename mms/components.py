@@ -16,6 +16,12 @@ GRADIENTS = {d * d: tuple(a + b for a in AXES[:d] for b in AXES[:d]) for d in CO
 GRADIENTS[5] = (*GRADIENTS[4], HOOP)  # of axisymmetry
 
 
+def at(X: Floats, digits: int = 4) -> str:
+    """Text of a reference position (d,): `X = 0.5`, `(X, Y) = (0.5, 0.25)`."""
+    names, numbers = AXES[: len(X)].upper(), [f"{value:.{digits}g}" for value in X]
+    return f"X = {numbers[0]}" if len(X) == 1 else f"({', '.join(names)}) = ({', '.join(numbers)})"
+
+
 def square(F: Floats) -> Floats:
     """Square matrices (...,n,n) of components row by row (...,n*n); of the five of axisymmetry 3 x 3."""
     count = F.shape[-1]

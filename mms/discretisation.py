@@ -46,6 +46,6 @@ def output_steps(steps: int, count: int) -> tuple[int, ...]:
 
 
 def boundary_kinds(solution: Any) -> tuple[str, ...]:
-    """Kinds of left, right, bottom, top of a solution, which may state one for all."""
+    """Kinds of the sides of a solution, left and right first, which may state one for all."""
     given = solution.boundary
-    return (given,) * 4 if isinstance(given, str) else tuple(given)
+    return (given,) * (2 * dimension(solution)) if isinstance(given, str) else tuple(given)

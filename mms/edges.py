@@ -1,4 +1,4 @@
-"""Boundary that a solver can impose on the four sides of a rectangle, found from the manufactured fields.
+"""Boundary that a solver can impose on the sides of a body, found from the manufactured fields.
 
 fixed       u = 0
 roller      u . n = 0, and no shear traction
@@ -15,12 +15,14 @@ from typing import Any
 
 import numpy as np
 
+from mpm_verify.mms.components import at
+from mpm_verify.mms.discretisation import dimension
 from mpm_verify.mms.manufacture import Manufactured
-from mpm_verify.mms.measure import CELLS, TIMES, Sampler, WaveMaterial, largest, least_stress
-from mpm_verify.solver.sides import SIDES
+from mpm_verify.mms.measure import TIMES, Sampler, WaveMaterial, inside, largest, least_stress
+from mpm_verify.solver.sides import SOLID_SIDES
 from mpm_verify.solver.state import Floats
 
-POINTS = 65  # sampled on a side
+POINTS = {1: 1, 2: 65, 3: 17}  # sampled along a side, or along each axis of a face
 ROUND = 1e-9  # fraction of the largest displacement or stress: above round-off, below what could be meant
 ROUNDED = 5e-3  # fraction of the same: 3.14 for pi misses by less
 OPEN = ("pulled", "prescribed")  # kinds that any edge can be of
@@ -40,7 +42,7 @@ class Peak:
     t: float
 
     def __str__(self) -> str:
-        return f"{self.value:.3g} at (X, Y) = ({self.X[0]:.4g}, {self.X[1]:.4g}), t = {self.t:.4g}"
+        return f"{self.value:.3g} at {at(self.X)}, t = {self.t:.4g}"
 
 
 @dataclass(frozen=True)
@@ -56,7 +58,7 @@ class Side:
 
 @dataclass(frozen=True)
 class Edges:
-    """Four sides of a body; `reach` is its largest displacement, `motion` the largest component of one.
+    """Sides of a body; `reach` is its largest displacement, `motion` the largest component of one.
 
     `move` and `stress` are sizes below which a displacement and a traction are round-off. `uniform` says that F is the
     same everywhere at a time.
@@ -138,25 +140,38 @@ class Edges:
 
 
 def examine(solution: Any, exact: Manufactured, material: WaveMaterial) -> Edges:
-    """Find displacements and tractions on the four sides of the body over the duration."""
-    sampler, times = Sampler(exact), np.linspace(0.0, solution.duration, TIMES)
-    body = sampler(solution.layout(float(solution.upper[0] - solution.lower[0]) / CELLS, 4).X, times)
-    reach, sides = float(np.hypot(body.u[..., 0], body.u[..., 1]).max()), []
-    for number, name in enumerate(SIDES):
+    """Find displacements and tractions on the sides of the body over the duration."""
+    sampler, times, d = Sampler(exact), np.linspace(0.0, solution.duration, TIMES), dimension(solution)
+    body = sampler(inside(solution).X, times)
+    reach, sides = length(body.u), []
+    for number, name in enumerate(SOLID_SIDES[: 2 * d]):
         axis, corner = number // 2, (solution.lower, solution.upper)[number % 2]
-        X = np.linspace(solution.lower, solution.upper, POINTS)
-        X[:, axis] = corner[axis]
+        X, others = lattice(solution, POINTS[d], axis, corner[axis]), [k for k in range(d) if k != axis]
         s = sampler(X, times)
-        reach = max(reach, float(np.hypot(s.u[..., 0], s.u[..., 1]).max()))
-        quantities = (s.u[..., axis], s.u[..., 1 - axis], s.P[..., axis, axis], s.P[..., 1 - axis, axis])
+        reach = max(reach, length(s.u))
+        quantities = (s.u[..., [axis]], s.u[..., others], s.P[..., [axis], axis], s.P[..., others, axis])
         sides.append(Side(name, *(peak(values, X, times) for values in quantities)))
     motion = max(largest(body.u), *(peak.value for side in sides for peak in (side.normal, side.tangential)))
     stress = ROUND * max(largest(body.P), least_stress(material))
-    uniform = largest(body.F - body.F[:, :1]) <= ROUND * largest(body.F - np.eye(2))
+    uniform = largest(body.F - body.F[:, :1]) <= ROUND * largest(body.F - np.eye(body.F.shape[-1]))
     return Edges(tuple(sides), reach, motion, ROUND * reach, stress, uniform)
 
 
+def lattice(solution: Any, count: int, axis: int = -1, value: float = 0.0) -> Floats:
+    """Reference positions (n,d) in rows, `count` on each axis, the sides included; of one value on an `axis`."""
+    lines = [np.linspace(solution.lower[k], solution.upper[k], count) for k in range(dimension(solution))]
+    if axis >= 0:
+        lines[axis] = np.array([value])
+    return np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, len(lines))
+
+
+def length(u: Floats) -> float:
+    """Largest length of displacements (...,d)."""
+    return float(np.hypot.reduce(u, axis=-1).max())
+
+
 def peak(values: Floats, X: Floats, times: Floats) -> Peak:
-    """Largest size of `values` (T,P)."""
-    k, p = np.unravel_index(int(np.abs(values).argmax()), values.shape)
-    return Peak(float(abs(values[k, p])), X[p], float(times[k]))
+    """Largest size of the components of `values` (T,P,n), zero where there are none."""
+    size = np.abs(values).max(axis=-1, initial=0.0)
+    k, p = np.unravel_index(int(size.argmax()), size.shape)
+    return Peak(float(size[k, p]), X[p], float(times[k]))

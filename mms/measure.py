@@ -14,15 +14,16 @@ import sympy as sp
 
 from mpm_verify.mms.blind_spots import OPEN
 from mpm_verify.mms.components import square
-from mpm_verify.mms.discretisation import axisymmetric, boundary_kinds
+from mpm_verify.mms.discretisation import axisymmetric, boundary_kinds, dimension, width
 from mpm_verify.mms.manufacture import Manufactured
 from mpm_verify.solver.layout import Layout, shared_corners
-from mpm_verify.solver.sides import SIDES
+from mpm_verify.solver.sides import SOLID_SIDES
 from mpm_verify.solver.state import Floats
 
 TIMES = 33  # even steps hit the extremes of a wave whose period divides the duration
 CELLS = 16  # on the width of the body, four positions in each
 SOLID_CELLS = 8  # of a body in three dimensions, eight positions in each; in one dimension two in each
+BESIDE = 1e-12  # fraction of the width: what vanishes on an axis is round-off of a double there
 SHARP = 0.8  # cosine of half the angle between two faces: at the corners of a rectangle there is no one normal
 
 
@@ -75,11 +76,15 @@ class Sample:
 
 
 class Sampler:
-    """Sampler of the fields of one manufactured solution; compiled once."""
+    """Sampler of the fields of one manufactured solution; compiled once.
+
+    On an axis it looks beside it, at the radius `least`: terms over the radius have a limit there, and no value.
+    """
 
     def __init__(self, exact: Manufactured) -> None:
-        f = exact.fields
+        f, solution = exact.fields, exact.solution
         X_t, inner, self.count = (*f.X, f.t), list(f.inner), len(f.F)
+        self.least = BESIDE * width(solution) if axisymmetric(solution) else -np.inf
         self.F: Any = sp.lambdify(X_t, f.F, "numpy", cse=True)
         self.first: Any = sp.lambdify(X_t, [*f.u, *f.v, *f.inner.values()], "numpy", cse=True)
         self.last: Any = sp.lambdify(inner, [*f.P, *f.sigma, *f.b], "numpy", cse=True)
@@ -87,6 +92,7 @@ class Sampler:
     def __call__(self, X: Floats, times: Floats) -> Sample:
         """Fields at all reference positions (P,d) at all times (T,); what has no value there is NaN or infinite."""
         shape, d = (len(times), len(X)), X.shape[1]
+        X = np.column_stack([np.maximum(X[:, 0], self.least), X[:, 1:]])
         with np.errstate(all="ignore"):
             first = filled(self.first(*X.T, times[:, None]), shape)
             last = filled(self.last(*np.moveaxis(first[..., 2 * d :], -1, 0)), shape)
@@ -141,10 +147,9 @@ def faces_of_a_block(layout: Layout) -> tuple[Floats, Floats]:
 
 def measure(exact: Manufactured, solution: Any, material: WaveMaterial) -> dict[str, float]:
     """Measure a solution: numbers without units, lengths relative to the body's extent in x, as cells are."""
-    extent = solution.upper - solution.lower
-    width, times = float(extent[0]), np.linspace(0.0, solution.duration, TIMES)
-    d, sampler, around = len(extent), Sampler(exact), axisymmetric(solution)
-    layout = solution.layout(width / (SOLID_CELLS if d == 3 else CELLS), 2**d)
+    length, times = width(solution), np.linspace(0.0, solution.duration, TIMES)
+    d, sampler, around = dimension(solution), Sampler(exact), axisymmetric(solution)
+    layout = inside(solution)
     s = sampler(layout.X, times)
     shift, L = s.F - np.eye(s.F.shape[-1]), sampler.rate(layout.X, times) @ np.linalg.inv(s.F)
     inertia, load = largest(s.acceleration), largest(s.b)
@@ -156,8 +161,8 @@ def measure(exact: Manufactured, solution: Any, material: WaveMaterial) -> dict[
         "order": ratio(largest(s.F @ L - L @ s.F), largest(L)),  # whether F and L commute
         "J_min": float(s.J.min()),
         "J_max": float(s.J.max()),
-        "gradient": width * largest(s.slope),
-        "displacement": largest(s.u) / width,
+        "gradient": length * largest(s.slope),
+        "displacement": largest(s.u) / length,
         "start_acceleration": ratio(largest(s.acceleration[0]), inertia),
         "start_velocity": ratio(largest(s.v[0]), largest(s.v)),
         "load": ratio(load, inertia),
@@ -169,7 +174,7 @@ def measure(exact: Manufactured, solution: Any, material: WaveMaterial) -> dict[
     if d > 1 and not around:
         numbers["mirror"] = mirror(s.u, sampler, solution, layout, times)
     numbers |= hoop(s, layout.X[:, 0], material.rho0, max(inertia, load)) if around else {}
-    moves = open_sides(solution) if d == 2 else {}
+    moves = open_sides(solution)
     numbers |= at_the_edge(s, sampler, layout, times, least_stress(material), moves)
     numbers |= {"edge_free": float(solution.boundary == "free"), **moves}
     if getattr(material, "small_strain", False):
@@ -177,6 +182,13 @@ def measure(exact: Manufactured, solution: Any, material: WaveMaterial) -> dict[
     if around:
         numbers["axisymmetric"] = 1.0
     return numbers if d == 2 else {**numbers, "dimension": float(d)}
+
+
+def inside(solution: Any) -> Layout:
+    """Layout whose positions a body is sampled at."""
+    d = dimension(solution)
+    layout: Layout = solution.layout(width(solution) / (SOLID_CELLS if d == 3 else CELLS), 2**d)
+    return layout
 
 
 def hoop(s: Sample, radius: Floats, rho0: float, force: float) -> dict[str, float]:
@@ -194,7 +206,7 @@ def hoop(s: Sample, radius: Floats, rho0: float, force: float) -> dict[str, floa
 def open_sides(solution: Any) -> dict[str, float]:
     """Sides that are pulled or prescribed, as codes of OPEN; of one that nobody named so, the code of `found`."""
     named = getattr(solution, "named", tuple)() is not None
-    kinds = zip(SIDES, boundary_kinds(solution), strict=True)
+    kinds = zip(SOLID_SIDES, boundary_kinds(solution), strict=False)
     return {side: OPEN[kind if named else "found"] for side, kind in kinds if kind in OPEN}
 
 
@@ -226,9 +238,9 @@ def at_the_edge(
     Beside sides that are pulled or prescribed, `moves`, those of the others alone; where there is no other, of all.
     """
     X, normal = boundary(layout)
-    if 0 < len(moves) < len(SIDES):
+    if 0 < len(moves) < 2 * X.shape[1]:
         side = 2 * np.abs(normal).argmax(axis=1) + (normal.sum(axis=1) > 0)
-        X, normal = (part[[SIDES[k] not in moves for k in side]] for part in (X, normal))
+        X, normal = (part[[SOLID_SIDES[k] not in moves for k in side]] for part in (X, normal))
     edge, u, P = sampler(X, times), largest(s.u), max(largest(s.P), least)
     traction = edge.P[..., : X.shape[1], : X.shape[1]] * normal[:, None, :]
     return {

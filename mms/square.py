@@ -104,5 +104,9 @@ class Revolved(Square):
 
     def layout(self, dx: float, ppc: int, offset: Offset = CENTRED) -> Layout:
         """Layout of square domains, `ppc` in a cell of side dx, with volumes per radian."""
-        flat = super().layout(dx, ppc, offset)
-        return replace(flat, V0=flat.V0 * flat.X[:, 0])
+        return per_radian(super().layout(dx, ppc, offset))
+
+
+def per_radian(flat: Layout) -> Layout:
+    """Layout of a section around an axis: each volume is the area times the radius of its middle."""
+    return replace(flat, V0=flat.V0 * flat.X[:, 0])

@@ -316,8 +316,9 @@ def test_studies_on_the_page_are_studies(tmp_path: Path) -> None:
     }
 
 
-def test_the_solution_on_the_page_is_the_tested_one() -> None:
-    assert blocks(DOCS / "own-solution.md", "python") == [(TOP / "tests" / "own_solution.py").read_text()]
+def test_the_solutions_on_the_page_are_the_tested_ones() -> None:
+    files = ("own_solution.py", "own_can.py")
+    assert blocks(DOCS / "own-solution.md", "python") == [(TOP / "tests" / file).read_text() for file in files]
 
 
 def test_the_transfer_on_the_page_is_pic(tmp_path: Path) -> None:

@@ -1,5 +1,6 @@
 """The four norms against plain NumPy, and what the printed one shows when nothing improves."""
 
+import re
 from typing import Any
 
 import numpy as np
@@ -7,8 +8,9 @@ import pytest
 
 from mpm_verify.cases.judging.fit import local_orders
 from mpm_verify.cases.mms.norms import CHUNK, SUMS, Norms, compare, new_sums
-from mpm_verify.cases.mms.run import NORMS, QUANTITIES
+from mpm_verify.cases.mms.run import NORMS, QUANTITIES, Run
 from mpm_verify.mms.manufacture import Manufactured, manufacture
+from mpm_verify.reports.sentences.norms import printed
 from mpm_verify.solver.material.neo_hookean import NeoHookean
 from mpm_verify.solver.plugins import create
 from mpm_verify.solver.state import Floats, Particles
@@ -140,3 +142,28 @@ def test_nan_is_not_hidden(exact: Manufactured) -> None:
     )  # fmt: skip
     norms.add(shares)
     assert np.isnan(norms.errors()["v"]["rms"])
+
+
+def shrinks(d: int, finer: bool, ppc: int, frames: bool) -> float:
+    """Factor by which the printed norm of a constant error falls on cells half as wide, or with more particles."""
+    steps = np.array([16, 16 if frames else 16 * 2**finer])
+    particles = np.array([4**d, (4 * 2**finer) ** d * ppc])
+    sizes = [np.sqrt(n * m * 0.25) / (n * m) for n, m in zip(steps, particles, strict=True)]
+    return float(sizes[0] / sizes[1])
+
+
+@pytest.mark.parametrize("solver", ["", "mine {case} {out}"])
+@pytest.mark.parametrize("d", [1, 2, 3])
+def test_what_the_page_says_of_the_printed_norm(d: int, solver: str) -> None:
+    """A constant error in one, two and three dimensions; frames of a solver of one's own are as many on each grid."""
+    numbers = {"√2": 2**0.5, "2": 2.0, "3": 3.0, "√8": 8**0.5, "4": 4.0, "√27": 27**0.5}
+    orders = {"half an order": 0.5, "an order": 1.0, "1.5 orders": 1.5, "2 orders": 2.0}
+    run = Run("cpdi", "bump", "neo_hookean", 8, 4, 0.4, dim=d, solver=solver)
+    said = re.search(r"printed by (\S+) more .* adds (.*) in (\d)-D, .* 1 → (\d+) → (\d+) .* by (\S+) and (\S+) though",
+                     printed([run, run]))  # fmt: skip
+    assert said
+    factor = shrinks(d, True, 1, bool(solver))
+    assert numbers[said[1]] == pytest.approx(factor)
+    assert (orders[said[2]], int(said[3])) == (pytest.approx(np.log2(factor)), d)
+    for count, by in ((said[4], said[6]), (said[5], said[7])):
+        assert numbers[by] == pytest.approx(shrinks(d, False, int(count), bool(solver)))

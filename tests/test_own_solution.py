@@ -225,7 +225,8 @@ BAD: dict[str, tuple[dict[str, str], str]] = {
     "keys": ({"domain": ", 'sped': 1"}, r"domain returns .*; it must return a dictionary with lower"),
     "numbers": ({"domain": ", 'duration': 'long'"}, r"domain has duration = 'long', which is not a finite number$"),
     "corners": ({"domain": ", 'upper': (0, 1)"}, r"domain has upper = \(0, 1\), not above lower = \(0, 0\)$"),
-    "three numbers": ({"domain": ", 'upper': (1, 1, 1)"}, r"domain has upper = \(1, 1, 1\); write two numbers$"),
+    "three numbers": ({"domain": ", 'upper': (1, 1, 1)"}, r"upper = \(1, 1, 1\); write as many numbers for both$"),
+    "no numbers": ({"domain": ", 'upper': ()"}, r"upper = \(\); write two numbers, one on a line, three in a box$"),
     "time": ({"domain": ", 'duration': -1"}, r"domain has duration = -1, which must be above zero$"),
     "order": ({"domain": ", 'order': 0"}, r"domain has order = 0, which must be above zero$"),
     "no time": ({"domain": ", 'duration': None"}, r"domain has duration = None, which is not a finite number$"),
@@ -239,7 +240,7 @@ BAD: dict[str, tuple[dict[str, str], str]] = {
         for name, said in {
             "material": r"; write a name with its parameters, such as 'neo_hookean:E=1e4,nu=0.3'$",
             "boundary": r"; write one of fixed, .*, prescribed, or four of them for left, right, bottom, top$",
-            **dict.fromkeys(("lower", "upper"), r"(; write two numbers$|, which is not a finite number$)"),
+            **dict.fromkeys(("lower", "upper"), r", which is not a finite number$"),
             **dict.fromkeys(("duration", "speed", "order"), r", which is not a finite number$"),
         }.items()
         for value in WRONG

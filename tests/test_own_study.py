@@ -16,7 +16,7 @@ from mpm_verify.cases.mms.deviations import SHOWN
 from mpm_verify.cases.mms.execute import execute
 from mpm_verify.cases.mms.expectations import expected, promised
 from mpm_verify.cases.mms.stability import rounded, speed_parameter
-from mpm_verify.mms.cells import check_cells, fits, fitting, ratio
+from mpm_verify.mms.cells import check_cells, fits, fitting, ratios, unit
 from mpm_verify.reports.sentences import commands
 from mpm_verify.solver.plugins import SOLUTIONS, create, label
 from mpm_verify.verify.main import main
@@ -101,15 +101,15 @@ def test_cells_that_fit(usual: tuple[int, ...]) -> None:
     """As many levels, each fills the body, near the usual ones; untouched where they fit."""
     for width, height in itertools.product((1, 2, 3, 0.3), (1, 0.7, 0.5, 1 / 3, 0.1, 1.3, 4)):
         body = box(width, height)
-        cells, sides = fitting(body, usual), ratio(body)
+        cells, sides = fitting(body, usual), ratios(body)
         assert sides is not None
         assert len(cells) == len(usual)
         assert all(a < b for a, b in itertools.pairwise(cells))
         assert all(fits(count, sides) for count in cells)
         assert 0.85 * usual[0] <= cells[0]
-        assert cells[-1] <= max(4 * usual[-1], 5 * 2 * sides.denominator)
+        assert cells[-1] <= max(4 * usual[-1], 5 * 2 * unit(sides))
         assert cells == usual or not all(fits(count, sides) for count in usual)
-        assert cells[0] * sides >= 2
+        assert cells[0] * min(sides) >= 2
         check_cells("own", body, cells)
 
 

@@ -183,7 +183,7 @@ def test_printed_is_nowhere_among_the_judged(folder: Path, page: str) -> None:
     verdicts = pd.read_csv(folder / "tables" / "verdicts.csv")
     assert set(verdicts[verdicts.role == "judged"].norm) == {"rms"}
     assert "printed" not in page[page.index("Judged errors") : page.index('id="shown"')]
-    assert "adds 1.5 orders in 2-D which the method does not have" in text(page)
+    assert "by √8 more than rms: it adds 1.5 orders in 2-D, which the method does not have" in text(page)
 
 
 def test_incomplete_study_says_so(tmp_path: Path) -> None:

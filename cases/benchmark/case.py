@@ -150,7 +150,9 @@ def checks(held: Held, series: Series, results: Mapping[str, Result]) -> list[Ch
         return Check(group, name, found, held.expected, held.way, held.source, held.within, failure, why)
 
     if held.of == "each":
-        return [made(f"{held.name}, {run.cells} cells", value(held, one), one) for run, one in done]
+        each = [made(f"{held.name}, {run.cells} cells", value(held, one), one) for run, one in done]
+        settled = held.limit and len(done) >= LEVELS
+        return each + (checks(replace(held, of="limit", within=held.limit), series, results) if settled else [])
     if held.of == "finest" or len(done) < LEVELS:
         few: Unjudged = "few_grids" if held.of == "limit" else ""
         return [made(f"{held.name}, {run.cells} cells", value(held, one), one, few) for run, one in done[-1:]]

@@ -90,6 +90,8 @@ class Held:
         fewer than three of the others nothing is held. 0 where coarse grids are as near as fine ones.
     unjudged
         Why the number is shown and not judged, such as parameters that its band was not measured at; usual is nothing.
+    limit
+        What the Richardson limit is held within too, beside ``each``, where there are three levels; 0: it is not.
     rests
         Whether it is that of a body at rest, so that nothing is judged of a run whose value AT_REST is 0.
     """
@@ -103,6 +105,7 @@ class Held:
     least: int = 0
     unjudged: Unjudged = ""
     rests: bool = False
+    limit: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,7 @@
 The contract of a case is told in cases/harness/contract.py.
 """
 
+import shlex
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
@@ -16,7 +17,7 @@ from mpm_verify.cases.mms.variants import axes, timed_as_usual, variant
 from mpm_verify.cases.solvers import column_map
 from mpm_verify.cases.solvers.command import PYTHON, program
 from mpm_verify.cases.solvers.naming import method_of, version_of
-from mpm_verify.mms.cells import fitting, ratio
+from mpm_verify.mms.cells import fitting, ratios, unit
 from mpm_verify.mms.discretisation import axisymmetric, dimension
 from mpm_verify.mms.duration import lasting
 from mpm_verify.mms.edges import OPEN
@@ -152,10 +153,9 @@ def check_ours(runs: Sequence[Run]) -> None:
     check_shifted(runs)
     for run in runs:
         plugin = create(SOLUTIONS, run.solution)
-        own = is_file(run.solution) and dimension(plugin) != 2  # told by its check
         state = {1: "in one dimension", 3: "in three dimensions"}.get(run.dim, "axisymmetric")
-        if (run.dim != 2 or axisymmetric(plugin)) and not own:
-            what = f"--solution {label(run.solution)}" + " --dim 3" * (dimension(plugin) < run.dim)
+        if run.dim != 2 or axisymmetric(plugin):
+            what = f"--solution {shlex.quote(run.solution)}" + " --dim 3" * (dimension(plugin) == 2 < run.dim)
             has = "is in plane strain" if run.dim == 2 else "has two"
             raise ValueError(
                 f"{label(run.solution)} {state} is for a solver of your own, the reference solver {has}: "
@@ -233,8 +233,8 @@ def parts(asked: Asked) -> list[Asked]:
 
 def multiple(run: Run) -> int:
     """Number of cells of the width whose multiples fill the body; 1 for those of this package, which are square."""
-    sides = ratio(create(SOLUTIONS, run.solution)) if is_file(run.solution) else None
-    return sides.denominator if sides else 1
+    sides = ratios(create(SOLUTIONS, run.solution)) if is_file(run.solution) else None
+    return unit(sides) if sides else 1
 
 
 def expectation(run: Run, quantity: str, norm: str) -> Expectation | None:

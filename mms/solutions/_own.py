@@ -4,9 +4,12 @@
     domain()             {"lower": (0, 0), "upper": (1, 1), "duration": 0.02, "speed": 100}: a rectangle, the time
                          that a study covers, and the reference speed C in dt = courant dx / C
 
-`domain` may also name a "material" (neo_hookean if not), a "boundary": fixed, roller, free, pulled, prescribed, or four
-of them for left, right, bottom, top (without it the boundary is found, see mms/edges.py), and the "order" that is
-expected of u.
+With one number in lower and upper it is a solution on a line, with three one in a box; with "axisymmetric": True the
+coordinates are the radius and the axis. These are for other solvers: the reference solver is in plane strain.
+
+`domain` may also name a "material" (neo_hookean if not), a "boundary": fixed, roller, free, pulled, prescribed, or one
+for each of left, right, bottom, top, back, front (without it the boundary is found, see mms/edges.py), and the "order"
+that is expected of u.
 Arguments with a number as default, in either function, are parameters, whatever their names: path/to/own.py:A=0.02.
 A file without these functions may hold a class instead, as those of the library. The file is executed as a program is:
 run none that you do not trust.
@@ -22,18 +25,21 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from mpm_verify.mms.discretisation import boundary_kinds
+from mpm_verify.mms.components import AXES
+from mpm_verify.mms.discretisation import axisymmetric, boundary_kinds, dimension
+from mpm_verify.mms.square import per_radian
 from mpm_verify.solver.layout import CENTRED, Layout, Offset, rectangle
 from mpm_verify.solver.own_file import derived as file_derived
 from mpm_verify.solver.own_file import guarded, module_of, shortened
 from mpm_verify.solver.plugins import SOLUTIONS, own_class, parameters_of
+from mpm_verify.solver.sides import SOLID_SIDES
 from mpm_verify.solver.state import Floats
 
 if TYPE_CHECKING:
     import sympy as sp
 
 ARGUMENTS = {"displacement": ["X", "t"], "domain": []}
-NEEDED, OPTIONAL = {"lower", "upper", "duration", "speed"}, {"material", "boundary", "order"}
+NEEDED, OPTIONAL = {"lower", "upper", "duration", "speed"}, {"material", "boundary", "order", "axisymmetric"}
 KINDS = ("fixed", "roller", "free", "pulled", "prescribed")
 HELD = ("fixed", "roller")  # at a wall that does not move
 HUGE = 1e30  # a larger number of domain() overflows on the way
@@ -67,14 +73,15 @@ class Own:
         self.named()
 
     def displacement(self, X: Sequence["sp.Symbol"], t: "sp.Symbol") -> "sp.Matrix":
-        """Displacement u (2,) of the reference position X and the time t, expressions in X, Y and t."""
+        """Displacement u (d,) of the reference position X and the time t, expressions in the coordinates and t."""
         import sympy as sp
 
-        value = self.call("displacement", tuple(X), t)
+        value, axes = self.call("displacement", tuple(X), t), AXES[: len(self.lower)]
         u = list(value) if isinstance(value, sp.MatrixBase | list | tuple) else None
         kinds = [isinstance(e, sp.Expr | int | float) and not isinstance(e, bool) for e in u or ()]
-        if u is None or len(u) != 2 or not all(kinds):
-            raise ValueError(f"{self.path}: displacement must return sp.Matrix([u_x, u_y]), not {shortened(value)}")
+        if u is None or len(u) != len(axes) or not all(kinds):
+            listed = ", ".join(f"u_{axis}" for axis in axes)
+            raise ValueError(f"{self.path}: displacement must return sp.Matrix([{listed}]), not {shortened(value)}")
         u = [sp.sympify(e) for e in u]
         unknown = set().union(*(e.free_symbols for e in u)) - {*X, t}
         if unknown:
@@ -87,11 +94,17 @@ class Own:
         """Dictionary that domain() returns, checked."""
         domain = self.call("domain")
         words = (
-            "it must return a dictionary with lower, upper, duration and speed, and perhaps material, boundary, order"
+            "it must return a dictionary with lower, upper, duration and speed, and perhaps material, boundary, order, "
+            "axisymmetric"
         )
         if not isinstance(domain, dict) or not NEEDED <= set(domain) <= NEEDED | OPTIONAL:
             raise ValueError(f"{self.path}: domain returns {shortened(domain)}; {words}")
         box = {name: self.corner(name, domain[name]) for name in ("lower", "upper")}
+        if len(box["upper"]) != len(box["lower"]):
+            raise ValueError(
+                f"{self.path}: domain has lower = {domain['lower']} and upper = {domain['upper']}; write as many "
+                "numbers for both"
+            )
         if not (box["upper"] > box["lower"]).all():
             raise ValueError(f"{self.path}: domain has upper = {domain['upper']}, not above lower = {domain['lower']}")
         sizes = {n: self.number(n, domain[n]) for n in ("duration", "speed", "order") if n in domain}
@@ -104,6 +117,10 @@ class Own:
                 f"{self.path}: domain has material = {shortened(material)}; write a name with its parameters, such as "
                 "'neo_hookean:E=1e4,nu=0.3'"
             )
+        if not isinstance(domain.get("axisymmetric", False), bool | np.bool_):
+            raise ValueError(
+                f"{self.path}: domain has axisymmetric = {shortened(domain['axisymmetric'])}; write True or False"
+            )
         return {**domain, **box, **sizes, "material": material}
 
     def named(self) -> tuple[str, ...] | None:
@@ -111,21 +128,25 @@ class Own:
         named = self.domain.get("boundary")
         if named is None:
             return None
-        sides = tuple(named) if isinstance(named, tuple | list) else (named,) * 4
-        if len(sides) != 4 or not all(isinstance(kind, str) and kind in KINDS for kind in sides):
-            choices = ", ".join(KINDS)
+        names = SOLID_SIDES[: 2 * len(self.lower)]
+        kinds = [kind for kind in KINDS if kind != "roller" or len(names) > 2]  # along the end of a line nothing slips
+        sides = tuple(named) if isinstance(named, tuple | list) else (named,) * len(names)
+        if len(sides) != len(names) or not all(isinstance(kind, str) and kind in kinds for kind in sides):
+            count = {2: "two", 4: "four", 6: "six"}[len(names)]
             raise ValueError(
-                f"{self.path}: domain has boundary = {shortened(named)}; write one of {choices}, or four of them for "
-                "left, right, bottom, top"
+                f"{self.path}: domain has boundary = {shortened(named)}; write one of {', '.join(kinds)}, or {count} "
+                f"of them for {', '.join(names)}"
             )
         return sides
 
     def corner(self, name: str, value: Any) -> Floats:
-        """Corner (2,) of domain()."""
+        """Corner (d,) of domain(); on a line it may be a number alone."""
         several = isinstance(value, tuple | list) or (isinstance(value, np.ndarray) and value.ndim > 0)
-        if not several or len(value) != 2:
-            raise ValueError(f"{self.path}: domain has {name} = {shortened(value)}; write two numbers")
-        return np.array([self.number(name, one) for one in value])
+        if several and len(value) not in (1, 2, 3):
+            raise ValueError(
+                f"{self.path}: domain has {name} = {shortened(value)}; write two numbers, one on a line, three in a box"
+            )
+        return np.array([self.number(name, one) for one in (value if several else (value,))])
 
     def number(self, name: str, value: Any) -> float:
         """Finite number of domain(); a word that looks like one is not taken."""
@@ -143,11 +164,12 @@ class Own:
     C = property(lambda self: self.domain["speed"])
     material = property(lambda self: self.domain["material"])
     order = property(lambda self: self.domain.get("order"))
+    axisymmetric = property(lambda self: bool(self.domain.get("axisymmetric")))
     edges = cached_property(edges)
 
     @property
     def boundary(self) -> str | tuple[str, ...]:
-        """Kind that all four sides have, otherwise those of left, right, bottom, top.
+        """Kind that all sides have, otherwise those of left, right, bottom, top, back, front.
 
         Raises ValueError where an edge misses a wall by what a rounded constant makes.
         """
@@ -157,21 +179,22 @@ class Own:
 
     @property
     def sides(self) -> tuple[str, ...]:
-        """Kinds of left, right, bottom, top: as domain() names them or as they are found."""
+        """Kinds of left, right, bottom, top, back, front: as domain() names them or as they are found."""
         return self.named() or self.edges.kinds
 
     @property
     def margin(self) -> Any:
-        """Room beyond the rectangle, none where a wall stands: a number, or (2,2) for lower and upper corner."""
-        moves = np.array([kind not in HELD for kind in self.sides]).reshape(2, 2).T
+        """Room beyond the body, none where a wall stands: a number, or (2,d) for lower and upper corner."""
+        moves = np.array([kind not in HELD for kind in self.sides]).reshape(-1, 2).T
         if not moves.any():
             return 0.0
         room = (1 + ROOM) * self.edges.reach
         return room if moves.all() else room * moves
 
     def layout(self, dx: float, ppc: int, offset: Offset = CENTRED) -> Layout:
-        """Layout of square domains, `ppc` in a cell of side dx."""
-        return rectangle(self.lower, self.upper, dx, ppc, offset)
+        """Layout of square or cubic domains, `ppc` in a cell of side dx; around an axis with volumes per radian."""
+        flat = rectangle(self.lower, self.upper, dx, ppc, offset)
+        return per_radian(flat) if self.axisymmetric else flat
 
     def call(self, name: str, *arguments: Any) -> Any:
         """Value of a function of the file with those parameters that it has; asked for once a process."""
@@ -223,22 +246,29 @@ def completed(path: Path, plugin: Any) -> type:
 
 
 def sides(solution: Any) -> tuple[str, ...]:
-    """Kinds of left, right, bottom, top of a solution of either form."""
+    """Kinds of the sides of a solution of either form."""
     if isinstance(solution, Own):
         return solution.sides
     return boundary_kinds(solution)
 
 
+def symbols(solution: Any) -> tuple[tuple["sp.Symbol", ...], "sp.Symbol"]:
+    """Coordinates and time that a displacement is asked for with, as mms/derive.py does."""
+    import sympy as sp
+
+    return tuple(sp.symbols([*AXES[: dimension(solution)].upper()], real=True)), sp.Symbol("t", real=True)
+
+
 def derived(solution: Any) -> str:
-    """Text of what a user's solution returns: u in X, Y and t, and all numbers and words that a run takes from it.
+    """Text of what a user's solution returns: u in coordinates and t, and all that a run takes from it.
 
     The file of a class counts too: it may compute what it likes.
     """
     import sympy as sp
 
-    u = solution.displacement(sp.symbols("X Y", real=True), sp.Symbol("t", real=True))
+    u = solution.displacement(*symbols(solution))
     names = ("lower", "upper", "duration", "C", "material")
-    values = [np.asarray(getattr(solution, name)).tolist() for name in names]
+    values = [np.asarray(getattr(solution, name)).tolist() for name in names] + ["around"] * axisymmetric(solution)
     if isinstance(solution, Own):
         return repr((sp.srepr(sp.Matrix(u)), values, solution.named()))
     return repr((sp.srepr(sp.Matrix(u)), values, solution.boundary, file_derived(solution.path)))

@@ -26,7 +26,7 @@ from mpm_verify.reports.figures.particles import particles
 from mpm_verify.reports.figures.position import position
 from mpm_verify.reports.figures.time_step import time_step
 from mpm_verify.reports.frames import Record
-from mpm_verify.reports.sentences import controls
+from mpm_verify.reports.sentences import controls, norms
 from mpm_verify.reports.sentences.headline import headline
 from mpm_verify.reports.sentences.remarks import left_out
 from mpm_verify.reports.tables import mms as tables
@@ -87,6 +87,7 @@ def _page(record: Record, folder: Path, field: tuple[int, int]) -> str:
         looked=looked(record),
         quantities=QUANTITIES,
         controls=controls,
+        norms=norms,
         words=words,
     )
 

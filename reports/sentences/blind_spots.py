@@ -17,7 +17,7 @@ from mpm_verify.mms.blind_spots import (
     Numbers,
 )
 from mpm_verify.reports.sentences.numbers import figure, percent
-from mpm_verify.solver.sides import SIDES
+from mpm_verify.solver.sides import SIDES, SOLID_SIDES
 
 MINUS = "\N{MINUS SIGN}"
 Words = Callable[[Numbers], str]
@@ -120,8 +120,8 @@ def no_walls(n: Numbers) -> str:
             f"The edges are free, and yet the fields have a traction of {percent(n['edge_traction'])} of the largest "
             "stress there: with this material the problem is not the one that is run, and no study of it converges."
         )
-    open_ = sum(side in n for side in SIDES)  # pulled or prescribed
-    if open_ == len(SIDES):
+    open_ = sum(side in n for side in SOLID_SIDES)  # pulled or prescribed
+    if open_ == 2 * n.get("dimension", 2):
         return "No wall holds the body: walls that hold still or let particles slide take no part."
     rest = "The rest of the boundary" if open_ else "The boundary"
     if not (moves or pulls):
