@@ -37,6 +37,14 @@ Page = Annotated[
     ),
 ]
 Vtk = Annotated[bool, typer.Option("--vtk", help="Write snapshots for ParaView.")]
+Minutes = Annotated[
+    float,
+    typer.Option(
+        "--checkpoint",
+        metavar="MINUTES",
+        help="Minutes between two checkpoints, from which a run that was killed goes on; inf for none.",
+    ),
+]
 DryRun = Annotated[bool, typer.Option("--dry-run", help="Print the runs and what they take, and run nothing.")]
 Yes = Annotated[bool, typer.Option("--yes", help="Run a study of more than an hour.")]
 COMMON: dict[str, tuple[Any, Any]] = {

@@ -22,10 +22,12 @@ if TYPE_CHECKING:
 
 SMALL = 4e7  # cost below which worker processes take longer to start than they save
 HOUR = 3600.0
+CHECKPOINT = 10.0  # minutes between two checkpoints of a run that can go on from one
 UPDATES = 3e6  # particle updates a second of one process, on the slow side
 PARTICLE, NODE, PROCESS = 500.0, 200.0, 3e8  # bytes: of a particle, of a node, of a process
 NOT_REPEATED = ("--out", "--junit", "--json", "--jobs", "--threads", "--summary", "--page", "--no-page", "--yes",
-                "--dry-run", "--vtk", "--no-vtk")  # fmt: skip
+                "--dry-run", "--vtk", "--no-vtk", "--checkpoint")  # fmt: skip
+VALUED = ("--out", "--junit", "--jobs", "--threads", "--summary", "--checkpoint")  # of them
 
 
 @dataclass(frozen=True)
@@ -36,6 +38,7 @@ class Settings:
     _: KW_ONLY
     jobs: int | None = None
     threads: int = 1
+    checkpoint: float = CHECKPOINT  # minutes
     json_output: bool = False
     junit: Path | None = None
     summary: Path | None = None
@@ -92,6 +95,7 @@ def conduct(study: "Study[Any]", settings: Settings) -> int:
 
         check_count(settings.jobs, "--jobs")
         check_count(settings.threads, "--threads")
+        check_minutes(settings.checkpoint)
         store = Store(settings.folder, study.case)
         if settings.dry_run:
             return told_plan(study, store, settings)
@@ -180,16 +184,22 @@ def shown(record: "Record", page: Path | None) -> None:
 def compute(study: "Study[Any]", store: Any, settings: Settings) -> dict[str, Any]:
     """Run the study, and give its Results; in this process if there is little to do or one job is asked for."""
     from mpm_verify.cases.harness.runner import InProcess, Ticker, cost, interruptible, pending, process_pool, run_study
-    from mpm_verify.verify.terminal.progress import progress
+    from mpm_verify.reports.sentences.checkpoints import abandoned
+    from mpm_verify.verify.terminal.progress import progress, say
 
-    waiting = pending(study, store)
+    waiting, every = pending(study, store), 60 * settings.checkpoint
     jobs = min(jobs_of(settings), max(1, len(waiting)))
+    say(abandoned(store.abandoned(study)) if waiting else "")
     with interruptible(), progress(waiting, cost) as bar:
         if jobs > 1 and sum(map(cost, waiting)) > SMALL:
             with process_pool(jobs, study.case) as (executor, heard):
-                return run_study(study, store, executor, settings.threads, bar.done, lambda: bar.hear(heard()))
+                done = run_study(
+                    study, store, executor, settings.threads, bar.done, lambda: bar.hear(heard()), every=every
+                )
+                bar.hear(heard())
+                return done
         Ticker.tell = staticmethod(lambda news: bar.hear([news]))
-        return run_study(study, store, InProcess(), settings.threads, bar.done)
+        return run_study(study, store, InProcess(), settings.threads, bar.done, every=every)
 
 
 def jobs_of(settings: Settings) -> int:
@@ -282,6 +292,12 @@ def check_count(count: int | None, option: str) -> None:
         raise ValueError(f"{option} takes whole numbers from 1 on")
 
 
+def check_minutes(minutes: float) -> None:
+    """Raise ValueError unless it is a time."""
+    if not minutes >= 0:
+        raise ValueError("--checkpoint takes minutes from 0 on, such as 10, or inf for no checkpoints")
+
+
 def command() -> str:
     """Command that repeats this one, without what says only where the result goes."""
     kept, skip = [], False
@@ -290,7 +306,7 @@ def command() -> str:
         if skip and not argument.startswith("--"):
             skip = False
         elif name in NOT_REPEATED:
-            skip = not value and name in ("--out", "--junit", "--jobs", "--threads", "--summary")
+            skip = not value and name in VALUED
         else:
             kept.append(argument)
             skip = False

@@ -4,15 +4,15 @@ DIR/study.json           the Study
 DIR/runs/<digest>.json   a Result
 DIR/runs/<digest>.npz    its arrays, see the case
 DIR/runs/<digest>.log    what a solver of somebody else printed
+DIR/runs/<digest>.checkpoint   state of a run that is under way, see checkpoint.py
 """
 
 import fcntl
 import io
 import json
 import os
-import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from pathlib import Path
@@ -23,6 +23,7 @@ import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
 from mpm_verify.cases.harness.contract import adapters, invalid
+from mpm_verify.cases.harness.files import replacing
 from mpm_verify.cases.harness.study import FORMAT, Arrays
 from mpm_verify.solver.plugins import CASES, available, is_file
 
@@ -101,15 +102,24 @@ class Store:
 
         Raises ValueError, and writes nothing, for what could not be read again.
         """
-        path, text = self.runs / result.digest, self._text(result, adapters(self.case)[1])
+        self.put_files(result.digest, self.files(result, arrays))
+
+    def files(self, result: Any, arrays: Arrays) -> dict[str, bytes]:
+        """Contents of the files of a run by their endings, the Result last. Raises ValueError as `put` does."""
+        text = self._text(result, adapters(self.case)[1])
         texts = {name: found for name, found in arrays.items() if isinstance(found, str)}
         buffer = io.BytesIO()
         np.savez(buffer, allow_pickle=False, **{name: found for name, found in arrays.items() if name not in texts})
-        self.write(path.with_suffix(".npz"), buffer.getvalue())
-        path.with_suffix(".log").unlink(missing_ok=True)  # of the run before, where it failed
-        for name, found in texts.items():
-            self.write(path.with_suffix(f".{name}"), found.encode(errors="replace"))
-        self.write(path.with_suffix(".json"), text)
+        more = {f".{name}": found.encode(errors="replace") for name, found in texts.items()}
+        return {".npz": buffer.getvalue(), **more, ".json": text}
+
+    def put_files(self, digest: str, files: Mapping[str, bytes]) -> None:
+        """Write the files of a run, in their order."""
+        path = self.runs / digest
+        for ending, content in files.items():
+            self.write(path.with_suffix(ending), content)
+            if ending == ".npz" and ".log" not in files:
+                path.with_suffix(".log").unlink(missing_ok=True)  # of the run before, where it failed
 
     def _text(self, record: Any, adapter: TypeAdapter[Any]) -> bytes:
         """A record as it is stored, with the case that it is of. Raises ValueError for one that cannot be read."""
@@ -121,6 +131,11 @@ class Store:
         except ValidationError as error:
             raise ValueError(f"{type(record).__name__} cannot be stored: {invalid(error)}") from None
         return text
+
+    def abandoned(self, study: Any) -> list[str]:
+        """Names of the checkpoints that are of no run of the study."""
+        known = {run.digest for run in study.runs}
+        return sorted(file.name for file in self.runs.glob("[!.]*.checkpoint") if file.stem not in known)
 
     def log(self, digest: str) -> Path | None:
         """File of what a solver of somebody else printed in that run, if it printed anything."""
@@ -179,15 +194,7 @@ class Store:
     def write(path: Path, data: bytes) -> None:
         """Write a file atomically: a reader sees the old file or the whole new one, whenever the power goes."""
         try:
-            temporary = path.with_name(f".{path.name}.{os.getpid()}.{threading.get_ident()}")
-            try:
-                with temporary.open("wb") as file:
-                    file.write(data)
-                    file.flush()
-                    os.fsync(file.fileno())
-                os.replace(temporary, path)
-            except BaseException:
-                temporary.unlink(missing_ok=True)
-                raise
+            with replacing(path) as file:
+                file.write(data)
         except OSError as error:
             raise StoreError(f"cannot write {path}: {error.strerror}; results stored before are kept") from error
