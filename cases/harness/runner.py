@@ -20,6 +20,7 @@ from typing import Any, ClassVar, TypeVar
 from mpm_verify.cases.harness.checkpoint import Checkpoint, News
 from mpm_verify.cases.harness.contract import Case, case_named
 from mpm_verify.cases.harness.store import Store, StoreError
+from mpm_verify.solver.failure import FailureKind
 from mpm_verify.solver.own_file import OwnFileError, blamed, said, shortened
 from mpm_verify.solver.plugins import absolute, is_file, split
 
@@ -50,7 +51,9 @@ def pending(study: Study, store: Store) -> list[Run]:
 
 def to_be_done(run: Run, result: Result) -> bool:
     """Whether a run has no Result yet, or a failed one that counts for nothing."""
-    return result is None or (run.again and result.status == "failed")
+    if result is None or result.status != "failed":
+        return result is None
+    return run.again or result.failure.kind is FailureKind.WORKER_DIED
 
 
 def perform(run: Run, digest: str, folder: Path, threads: int, every: float = inf) -> Result:
@@ -179,6 +182,18 @@ def interruptible() -> Iterator[None]:
         Ticker.stopped = False
 
 
+class Hands:
+    """Way of runs to an executor and of their Results back; processes of this machine store what they have done."""
+
+    def give(self, executor: Executor, run: Run, store: Store, threads: int, every: float) -> "Future[Any]":
+        """Submit a run."""
+        return executor.submit(perform, run, run.digest, store.folder, threads, every)
+
+    def take(self, run: Run, store: Store, future: "Future[Any]") -> Result:
+        """Result of a run that has ended, which is stored. Raises what ended it."""
+        return future.result()
+
+
 def run_study(
     study: Study,
     store: Store,
@@ -187,6 +202,7 @@ def run_study(
     done: Callable[[Result], None] = lambda result: None,
     poll: Callable[[], None] = lambda: None,
     every: float = inf,
+    hands: Hands | None = None,
 ) -> dict[str, Result]:
     """Results of the study by digest; those that are stored are read, the others run.
 
@@ -194,8 +210,8 @@ def run_study(
     so many seconds. Raises RunnerError where a worker dies, StoreError where a Result cannot be written; what is stored
     stays.
     """
-    runs = pending(study, store)
-    waiting = {executor.submit(perform, run, run.digest, store.folder, threads, every): run for run in runs}
+    hands = hands or Hands()
+    waiting = {hands.give(executor, run, store, threads, every): run for run in pending(study, store)}
     defects: list[tuple[Run, Exception]] = []
     try:
         while waiting:
@@ -204,7 +220,7 @@ def run_study(
             for future in finished:
                 run = waiting.pop(future)
                 try:
-                    done(future.result())
+                    done(hands.take(run, store, future))
                 except (StoreError, RunnerError, BrokenProcessPool, MemoryError):
                     raise
                 except Exception as error:  # a defect of ours in one run: the sweep goes on, and says so at its end

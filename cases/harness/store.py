@@ -71,16 +71,28 @@ def case_of(folder: Path) -> str:
     return str(case)
 
 
+class Disk:
+    """Writes of a store, by this process."""
+
+    def make(self, folder: Path) -> None:
+        """Make a folder. Raises StoreError."""
+        make(folder)
+
+    def write(self, path: Path, data: bytes) -> None:
+        """Write a file atomically. Raises StoreError."""
+        Store.write(path, data)
+
+
 class Store:
     """Results of a case on disk below `folder`. Raises StoreError where it cannot be made, read or written."""
 
-    def __init__(self, folder: Path, case: str = "mms") -> None:
-        self.folder, self.case = folder, case
+    def __init__(self, folder: Path, case: str = "mms", disk: Disk | None = None) -> None:
+        self.folder, self.case, self.disk = folder, case, disk or Disk()
         self.runs = folder / "runs"
 
     def create(self, study: Any) -> None:
         """Make the folder and write study.json; Results already there stay, a broken study.json is not written over."""
-        make(self.runs)
+        self.disk.make(self.runs)
         for leftover in self.runs.glob(".*"):  # of a process that was killed while it wrote
             with suppress(FileNotFoundError):
                 if time.time() - leftover.stat().st_mtime > HOUR:
@@ -89,7 +101,7 @@ class Store:
             self.study()
         elif (self.folder / "report.html").exists():
             raise StoreError(f"{self.folder} holds a page of something else; give another --out folder")
-        self.write(self.folder / "study.json", self._text(study, adapters(self.case)[0]))
+        self.disk.write(self.folder / "study.json", self._text(study, adapters(self.case)[0]))
 
     def study(self) -> Any:
         """Study of this folder."""
@@ -117,7 +129,7 @@ class Store:
         """Write the files of a run, in their order."""
         path = self.runs / digest
         for ending, content in files.items():
-            self.write(path.with_suffix(ending), content)
+            self.disk.write(path.with_suffix(ending), content)
             if ending == ".npz" and ".log" not in files:
                 path.with_suffix(".log").unlink(missing_ok=True)  # of the run before, where it failed
 
@@ -178,13 +190,15 @@ class Store:
     @contextmanager
     def locked(self) -> Iterator[None]:
         """Hold the folder for this process; another that asks meanwhile gets a StoreError, and not the same runs."""
-        make(self.runs)
+        self.disk.make(self.runs)
         handle = os.open(self.folder, os.O_RDONLY)  # the folder itself: a file for it would be one more in the study
         try:
             fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError as error:
+        except BlockingIOError as error:
             os.close(handle)
             raise StoreError(f"another verify works in {self.folder}; wait for it or give another --out") from error
+        except OSError:
+            pass  # a file system without locks on folders, such as NFS
         try:
             yield
         finally:
