@@ -179,7 +179,7 @@ def client_of(found: dict[str, Any]) -> Any:
     """Client whose workers answer so."""
     return SimpleNamespace(
         run=lambda *given, **named: found, get_executor=lambda pure: None, subscribe_topic=lambda *given: None,
-        scheduler_info=lambda n_workers: {"workers": found},
+        nthreads=lambda: found,
     )  # fmt: skip
 
 
@@ -243,10 +243,13 @@ def ended(error: BaseException) -> "Future[Any]":
 def test_a_run_whose_workers_die_is_a_failed_result_and_done_again(tmp_path: Path) -> None:
     study, hands = small(), Cluster(client_of({}))
     store, run = opened(tmp_path, study), study.runs[0]
+    checkpoint = store.runs / f"{run.digest}.checkpoint"
+    checkpoint.touch()
     result = hands.take(run, store, ended(distributed.KilledWorker("key", SimpleNamespace(address="a"), 3)))
     assert (result.status, result == store.get(run.digest)) == ("failed", True)
     assert failures.failure(result.failure) == "4 workers died in it, for want of memory perhaps"
     assert run in pending(study, store)
+    assert checkpoint.exists()  # from which it goes on
 
 
 def test_a_scheduler_that_is_gone_is_one_line(tmp_path: Path) -> None:

@@ -235,7 +235,8 @@ class Cluster(Hands):
             result = case_named(run.case).module.Result(
                 run=run, digest=run.digest, status="failed", failure=failure, environment=numerics()
             )
-            files, processor = store.files(result, {}), self.processor
+            store.put_files(run.digest, store.files(result, {}))
+            return result  # its checkpoint stays: the same command goes on from there
         try:
             self.check_processor(processor)
         except ValueError as error:
@@ -273,7 +274,7 @@ class Through(Disk):
 
     def ask(self, path: Path, data: bytes, here: StoreError) -> None:
         """Ask one worker after the other, until a file is seen here. Raises the error of this process if none is."""
-        for worker in self.cluster.client.scheduler_info(n_workers=-1)["workers"]:
+        for worker in list(self.cluster.client.nthreads()):
             told = self.cluster.client.run(write, str(path), data, workers=[worker], on_error="return")
             if told.get(worker) == "" and appears(path, data):
                 return
@@ -293,6 +294,20 @@ def appears(path: Path, data: bytes) -> bool:
 
 
 @contextmanager
+def quiet() -> Iterator[None]:
+    """Silence of the loggers of distributed: what matters is told in one line."""
+    loggers = [logging.getLogger(name) for name in logging.root.manager.loggerDict if name.startswith("distributed")]
+    levels = [logger.level for logger in loggers]
+    try:
+        for logger in loggers:
+            logger.setLevel(logging.CRITICAL + 1)
+        yield
+    finally:
+        for logger, level in zip(loggers, levels, strict=True):
+            logger.setLevel(level)
+
+
+@contextmanager
 def connected(address: str) -> Iterator[Cluster]:
     """Cluster of a scheduler's address or file, until the end of a study. Raises ValueError with one line."""
     if find_spec("distributed") is None:
@@ -303,12 +318,12 @@ def connected(address: str) -> Iterator[Cluster]:
     import dask
     from distributed import Client
 
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what matters is told in one line
-    with dask.config.set({"distributed.comm.timeouts.connect": f"{TIMEOUT:g}s"}), warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of versions, which are checked
+    with dask.config.set({"distributed.comm.timeouts.connect": f"{TIMEOUT:g}s"}), quiet():
         given = scheduler(address)
         try:
-            client = Client(given, timeout=TIMEOUT, set_as_default=False)
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # of versions, which are checked
+                client = Client(given, timeout=TIMEOUT, set_as_default=False)
         except Exception as error:  # whatever an answer in another protocol is taken for
             raise unreachable(address) from error
         cluster = Cluster(client)

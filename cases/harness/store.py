@@ -94,7 +94,7 @@ class Store:
         """Make the folder and write study.json; Results already there stay, a broken study.json is not written over."""
         self.disk.make(self.runs)
         for leftover in self.runs.glob(".*"):  # of a process that was killed while it wrote
-            with suppress(FileNotFoundError):
+            with suppress(OSError):
                 if time.time() - leftover.stat().st_mtime > HOUR:
                     leftover.unlink()
         if (self.folder / "study.json").exists():
