@@ -25,6 +25,7 @@ class FailureKind(StrEnum):
     OTHER_PARTICLES = (
         "other_particles"  # such a file has other particles than were given [found, expected; twice, other: ids] <file>
     )
+    WORKER_DIED = "worker_died"  # of a cluster, each time that the run was given to one [times]
     NOT_RUN = "not_run"  # nobody has run it yet
     OSCILLATES = "oscillates"  # no error can be estimated of a value that goes to and fro as cells get finer
     NO_ERROR = "no_error"  # it came to its end, and no error was measured

@@ -57,6 +57,13 @@ def file_hash(file: Path) -> str:
     return _digest(closure(file.stem, file.parent))
 
 
+@cache
+def package_hash() -> str:
+    """SHA-256 of all that computes: the modules of solver, mms and cases."""
+    files = [file for floor in ("solver", "mms", "cases") for file in (TOP / floor).rglob("*.py")]
+    return _digest({str(file.relative_to(TOP)): _ours(file).digest for file in files})
+
+
 def closure(module: str, folder: Path | None = None) -> dict[str, str]:
     """Hashes of the trees of all files in an import closure, by module; names beside `folder` are without package.
 

@@ -63,6 +63,8 @@ def study(
     threads: int = 1,
     replicates: int = 1,
     quick: bool = False,
+    dask: str | None = None,
+    checkpoint: float = 10.0,
     **axes: Any,
 ) -> "StoredStudy":
     """Run a study: what its folder holds is not run again.
@@ -79,6 +81,10 @@ def study(
         Runs of each point of a refinement, with the particles elsewhere in their cells.
     quick
         Whether axes that are not given have the values of `--quick`.
+    dask
+        Address of a Dask scheduler, or its scheduler file, whose workers do the runs; `jobs` is then not looked at.
+    checkpoint
+        Minutes between two checkpoints of a run that can go on from one; inf for none.
     **axes
         Fields of the case's Run, one value or a list each, whose product is run. A `solver` may be a Python function
         of a case, see docs/own-solver.md.
@@ -97,6 +103,8 @@ def study(
     """
     from mpm_verify.cases.harness.build import Asked, build
 
+    if callable(axes.get("solver")) and dask:
+        raise ValueError("a Python function as solver runs in this process; leave dask out, or give a command")
     if callable(axes.get("solver")):
         from mpm_verify.cases.solvers.callables import register
 
@@ -104,20 +112,19 @@ def study(
     values = {key: list(value) if isinstance(value, list | tuple) else [value] for key, value in axes.items()}
     words = [f"{key}={value!r}" for key, value in axes.items()]
     command = f"mpm_verify.study({', '.join([repr(case), *words])})"
-    return conducted(build(Asked(case, values, replicates, quick), command), out, jobs, threads)
+    more = {"dask": dask, "checkpoint": checkpoint}
+    asked = build(Asked(case, values, replicates, quick), command)
+    return conducted(asked, out, jobs=None if dask else jobs, threads=threads, **more)
 
 
-def conducted(asked: "Study[Any]", out: Path | str | None, jobs: int | None = 1, threads: int = 1) -> "StoredStudy":
-    """Stored study of one that is asked for: what its folder does not hold is run."""
-    from mpm_verify.cases.harness.store import Store
-    from mpm_verify.verify.run import Settings, affordable, compute, named
+def conducted(asked: "Study[Any]", out: Path | str | None, **how: Any) -> "StoredStudy":
+    """Stored study of one that is asked for: what its folder does not hold is run, as Settings say."""
+    from mpm_verify.verify.run import Settings, check_minutes, computing, named
 
-    settings = Settings(named(asked, Path(out) if out else None), jobs=jobs, threads=threads, yes=True)
-    store = Store(settings.folder, asked.case)
-    affordable(asked, store, settings)
-    with store.locked():
-        store.create(asked)
-        compute(asked, store, settings)
+    settings = Settings(named(asked, Path(out) if out else None), yes=True, **{"jobs": 1, **how})
+    check_minutes(settings.checkpoint)
+    with computing(asked, settings):
+        pass
     return load(settings.folder)
 
 

@@ -37,12 +37,45 @@ Page = Annotated[
     ),
 ]
 Vtk = Annotated[bool, typer.Option("--vtk", help="Write snapshots for ParaView.")]
+Minutes = Annotated[
+    float,
+    typer.Option(
+        "--checkpoint",
+        metavar="MINUTES",
+        help="Minutes between two checkpoints, from which a run that was killed goes on; inf for none.",
+    ),
+]
+
+
+def reachable(address: str | None) -> str | None:
+    """Scheduler's address, at which somebody listens: a study takes a while to build, and would end then."""
+    if address is None:
+        return None
+    from mpm_verify.cases.harness.scheduler import check_reachable
+
+    try:
+        check_reachable(address)
+    except ValueError as error:
+        raise typer.BadParameter(str(error)) from error
+    return address
+
+
+Dask = Annotated[
+    str | None,
+    typer.Option(
+        "--dask",
+        metavar="ADDRESS",
+        callback=reachable,
+        help="Run on the workers of a Dask cluster: the address of its scheduler, or a scheduler file.",
+        show_default="this machine",
+    ),
+]
 DryRun = Annotated[bool, typer.Option("--dry-run", help="Print the runs and what they take, and run nothing.")]
 Yes = Annotated[bool, typer.Option("--yes", help="Run a study of more than an hour.")]
 COMMON: dict[str, tuple[Any, Any]] = {
     "jobs": (Jobs, None), "threads": (Threads, 1), "out": (Out, None), "json_output": (Json, False),
     "junit": (Junit, None), "summary": (Summary, None), "page": (Page, None), "dry_run": (DryRun, False),
-    "yes": (Yes, False),
+    "yes": (Yes, False), "dask": (Dask, None),
 }  # fmt: skip
 
 

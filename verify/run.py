@@ -5,7 +5,7 @@ import shlex
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import KW_ONLY, dataclass, fields
+from dataclasses import KW_ONLY, dataclass, fields, replace
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
@@ -17,15 +17,20 @@ from mpm_verify.verify.exits import DEFECT, USAGE
 
 if TYPE_CHECKING:
     from mpm_verify.cases.harness.build import Asked
+    from mpm_verify.cases.harness.cluster import Cluster
     from mpm_verify.cases.harness.study import Study
     from mpm_verify.reports.frames import Record
 
 SMALL = 4e7  # cost below which worker processes take longer to start than they save
 HOUR = 3600.0
+CHECKPOINT = 10.0  # minutes between two checkpoints of a run that can go on from one
 UPDATES = 3e6  # particle updates a second of one process, on the slow side
 PARTICLE, NODE, PROCESS = 500.0, 200.0, 3e8  # bytes: of a particle, of a node, of a process
 NOT_REPEATED = ("--out", "--junit", "--json", "--jobs", "--threads", "--summary", "--page", "--no-page", "--yes",
-                "--dry-run", "--vtk", "--no-vtk")  # fmt: skip
+                "--dry-run", "--vtk", "--no-vtk", "--checkpoint",
+                "--dask")  # fmt: skip
+NO_WORKERS = "no worker is there yet; the runs wait for one, Ctrl-C stops"
+VALUED = ("--dask", "--out", "--junit", "--jobs", "--threads", "--summary", "--checkpoint")  # of them
 
 
 @dataclass(frozen=True)
@@ -36,6 +41,8 @@ class Settings:
     _: KW_ONLY
     jobs: int | None = None
     threads: int = 1
+    checkpoint: float = CHECKPOINT  # minutes
+    dask: str | None = None  # address of a scheduler, or its file
     json_output: bool = False
     junit: Path | None = None
     summary: Path | None = None
@@ -92,20 +99,44 @@ def conduct(study: "Study[Any]", settings: Settings) -> int:
 
         check_count(settings.jobs, "--jobs")
         check_count(settings.threads, "--threads")
-        store = Store(settings.folder, study.case)
+        check_minutes(settings.checkpoint)
         if settings.dry_run:
-            return told_plan(study, store, settings)
-        affordable(study, store, settings)
+            return told_plan(study, Store(settings.folder, study.case), settings)
         writable(settings.junit, "--junit")
         writable(settings.summary, "--summary")
-        with store.locked():  # before study.json is written: whoever has to wait leaves the other's study as it is
-            store.create(study)
-            results = compute(study, store, settings)
+        with computing(study, settings) as (store, results):
             record = Record(store, study, results, earlier=False)
             page = draw(record, settings)
         export(record, settings, page)
     code: int = record.analysis.exit_code
     return code
+
+
+@contextmanager
+def computing(study: "Study[Any]", settings: Settings) -> Iterator[tuple[Any, dict[str, Any]]]:
+    """Store of a study, held for this process, and its Results: what the folder does not hold is run."""
+    from mpm_verify.cases.harness.store import Store
+
+    with cluster(settings) as away:
+        store = Store(settings.folder, study.case, away.disk if away else None)
+        affordable(study, store, replace(settings, jobs=max(1, away.check())) if away else settings)
+        with store.locked():  # before study.json is written: whoever has to wait leaves the other's study as it is
+            store.create(study)
+            yield store, compute(study, store, settings, away)
+
+
+@contextmanager
+def cluster(settings: Settings) -> "Iterator[Cluster | None]":
+    """Cluster that is asked for, None where none is. Raises ValueError where it cannot be reached."""
+    if not settings.dask:
+        yield None
+        return
+    if settings.jobs is not None:
+        raise ValueError("--jobs is for this machine; leave it out, as with --dask each worker does a run at a time")
+    from mpm_verify.cases.harness.cluster import connected
+
+    with connected(settings.dask) as away:
+        yield away
 
 
 def draw(record: "Record", settings: Settings) -> Path | None:
@@ -177,19 +208,30 @@ def shown(record: "Record", page: Path | None) -> None:
         checks.show(record, page)
 
 
-def compute(study: "Study[Any]", store: Any, settings: Settings) -> dict[str, Any]:
+def compute(study: "Study[Any]", store: Any, settings: Settings, away: "Cluster | None" = None) -> dict[str, Any]:
     """Run the study, and give its Results; in this process if there is little to do or one job is asked for."""
     from mpm_verify.cases.harness.runner import InProcess, Ticker, cost, interruptible, pending, process_pool, run_study
-    from mpm_verify.verify.terminal.progress import progress
+    from mpm_verify.reports.sentences.checkpoints import abandoned
+    from mpm_verify.verify.terminal.progress import progress, say
 
-    waiting = pending(study, store)
+    waiting, every = pending(study, store), 60 * settings.checkpoint
     jobs = min(jobs_of(settings), max(1, len(waiting)))
+    say(abandoned(store.abandoned(study)) if waiting else "")
+    if away and waiting and not away.check():
+        say(NO_WORKERS)
     with interruptible(), progress(waiting, cost) as bar:
+        if away:
+            return run_study(study, store, away.executor, settings.threads, bar.done, lambda: bar.hear(away.heard()),
+                             every, away)  # fmt: skip
         if jobs > 1 and sum(map(cost, waiting)) > SMALL:
             with process_pool(jobs, study.case) as (executor, heard):
-                return run_study(study, store, executor, settings.threads, bar.done, lambda: bar.hear(heard()))
+                done = run_study(
+                    study, store, executor, settings.threads, bar.done, lambda: bar.hear(heard()), every=every
+                )
+                bar.hear(heard())
+                return done
         Ticker.tell = staticmethod(lambda news: bar.hear([news]))
-        return run_study(study, store, InProcess(), settings.threads, bar.done)
+        return run_study(study, store, InProcess(), settings.threads, bar.done, every=every)
 
 
 def jobs_of(settings: Settings) -> int:
@@ -238,7 +280,7 @@ def affordable(study: "Study[Any]", store: Any, settings: Settings) -> None:
 def refusal(needed: Estimate, settings: Settings) -> str:
     """Reason why a study is not run, and what to type; empty where it is."""
     there = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
-    if needed.memory > there:
+    if needed.memory > there and not settings.dask:
         return f"this machine has {there / 2**30:.1f} GB; take fewer cells or particles per cell, or --jobs 1"
     if needed.seconds > HOUR and not settings.yes:
         return "add --yes to run it, or --dry-run to see its runs"
@@ -282,6 +324,12 @@ def check_count(count: int | None, option: str) -> None:
         raise ValueError(f"{option} takes whole numbers from 1 on")
 
 
+def check_minutes(minutes: float) -> None:
+    """Raise ValueError unless it is a time."""
+    if not minutes >= 0:
+        raise ValueError("--checkpoint takes minutes from 0 on, such as 10, or inf for no checkpoints")
+
+
 def command() -> str:
     """Command that repeats this one, without what says only where the result goes."""
     kept, skip = [], False
@@ -290,7 +338,7 @@ def command() -> str:
         if skip and not argument.startswith("--"):
             skip = False
         elif name in NOT_REPEATED:
-            skip = not value and name in ("--out", "--junit", "--jobs", "--threads", "--summary")
+            skip = not value and name in VALUED
         else:
             kept.append(argument)
             skip = False

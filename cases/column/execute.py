@@ -14,7 +14,6 @@ of F (Scheme.deformation), domains of limited length (solver/basis/cpdi.py) and 
 (solver/voids.py).
 """
 
-import time
 from collections.abc import Callable
 from dataclasses import asdict, replace
 from math import ceil, inf, sqrt
@@ -26,8 +25,9 @@ from numpy.typing import NDArray
 from mpm_verify.cases.column.measure import Measure, due, final
 from mpm_verify.cases.column.run import ColumnResult, ColumnRun
 from mpm_verify.cases.column.start import stress
+from mpm_verify.cases.harness.checkpoint import Checkpoint
 from mpm_verify.cases.harness.environment import environment
-from mpm_verify.cases.harness.memory import forget_peak, peak_memory
+from mpm_verify.cases.harness.memory import forget_peak
 from mpm_verify.cases.harness.progress import Progress
 from mpm_verify.solver.boundary import Walls, moving
 from mpm_verify.solver.damping import Damping
@@ -136,23 +136,25 @@ def gravity(particles: Particles, t: float) -> None:
 
 
 def execute(
-    run: ColumnRun, tick: Callable[[float], None] = lambda fraction: None
+    run: ColumnRun, tick: Callable[[float], None] = lambda fraction: None, checkpoint: Checkpoint | None = None
 ) -> tuple[ColumnResult, dict[str, Any]]:
     """Run to the end, or to where it cannot go on: a failed run is a Result. `tick` hears the fraction that is done."""
+    checkpoint = checkpoint or Checkpoint()
     forget_peak()
     model, steps = setup(run)
     measure, failure = Measure(run, model), None
     kept = Kept(model, steps)
     model.watch(measure, kept, Progress(tick, steps))
-    started, used = time.perf_counter(), time.process_time()
     try:
-        measure.look(model)
-        check_time_step(model)
-        for _ in range(steps):
+        if not checkpoint.resume(model):
+            measure.look(model)
+            check_time_step(model)
+        while model.steps < steps:
             advance(model, gravity)
+            checkpoint.keep(model)
     except RunFailed as ended:
         failure = ended.failure
-    wall, cpu = time.perf_counter() - started, time.process_time() - used
+    wall, cpu, peak = checkpoint.spent
     curves = measure.curves()
     arrays = {f"curve_{name}": column.astype(np.float32) for name, column in curves.items()} | kept.arrays()
     result = ColumnResult(
@@ -165,7 +167,7 @@ def execute(
         dt=model.dt,
         wall_s=wall,
         cpu_s=cpu,
-        peak_memory_mb=peak_memory(),
+        peak_memory_mb=peak,
         failure=failure,
         environment=environment(),
         parameters=asdict(model.material) | {"domain limit": model.basis.limit},  # type: ignore[call-overload]

@@ -2,7 +2,6 @@
 
 from dataclasses import fields
 from functools import partial
-from typing import Any
 
 import numpy as np
 
@@ -19,6 +18,7 @@ from mpm_verify.cases.exact.body import (
     shaken,
     variants,
 )
+from mpm_verify.cases.harness.state import Taken, written
 from mpm_verify.mms.constitutive.driver import random
 from mpm_verify.mms.constitutive.tested import Part, Tested, attempt
 from mpm_verify.solver.failure import FailureKind, RunFailed
@@ -56,31 +56,18 @@ def restart(subject: Subject, variant: Variant) -> Tested:
     straight = start(p)
     for _ in range(BEFORE):
         advance(straight, kept)
-    stored, steps = {item.name: getattr(p, item.name).tobytes() for item in fields(p)}, straight.steps
-    shapes = {item.name: (getattr(p, item.name).dtype, getattr(p, item.name).shape) for item in fields(p)}
+    stored, steps = Taken(p), straight.steps
+    arrays = [array.copy() for array in stored.arrays]
     for _ in range(AFTER):
         advance(straight, kept)
-    q = Particles(*(read(stored, shapes, name) for name in ("X", "m", "V0", "domain")))
-    write(q, stored, shapes)
+    q = shaken(subject, populated(subject, layout(filled=True), np.eye(2)))
     again = start(q)
-    write(q, stored, shapes)  # a transfer starts as at the start of a run
+    written(stored.state, q, arrays)
     again.steps = steps
     for _ in range(AFTER):
         advance(again, kept)
-    differ = [name for name in stored if getattr(p, name).tobytes() != getattr(q, name).tobytes()]
+    differ = [one.name for one in fields(p) if getattr(p, one.name).tobytes() != getattr(q, one.name).tobytes()]
     return Tested(f"restart {variant}", float(len(differ)), 0.0, Part.STATE)
-
-
-def read(stored: dict[str, bytes], shapes: dict[str, tuple[Any, tuple[int, ...]]], name: str) -> Any:
-    """Array of what was stored."""
-    kind, shape = shapes[name]
-    return np.frombuffer(stored[name], kind).reshape(shape).copy()
-
-
-def write(p: Particles, stored: dict[str, bytes], shapes: dict[str, tuple[Any, tuple[int, ...]]]) -> None:
-    """Write all arrays of particles."""
-    for name in stored:
-        setattr(p, name, read(stored, shapes, name))
 
 
 def kept(particles: Particles, t: float) -> None:

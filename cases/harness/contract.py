@@ -6,7 +6,8 @@ A case is a module with
     Run, Result      records of cases/harness/study.py; each field of Run can be an axis of a study
     title            (runs) -> what a study of these runs is called unless it says otherwise
 and a module `execute.py` beside it, which is read when a run is to be done and whose imports name the Results:
-    execute          (run, tick) -> (Result, arrays): runs to the end; what cannot go on is a failed Result
+    execute          (run, tick) -> (Result, arrays): runs to the end; what cannot go on is a failed Result; one that
+                     takes a `checkpoint` too can go on from there, see checkpoint.py
 and, where they apply, instead of the defaults of Case:
     AXES             values of the axes that are not asked for, by field
     QUANTITIES, NORMS, JUDGED, expectation      what the order rule is asked, see cases/harness/build.py; the Run then
@@ -19,9 +20,9 @@ and, where they apply, instead of the defaults of Case:
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass
-from functools import cache
+from functools import cache, wraps
 from importlib import import_module
-from inspect import isfunction
+from inspect import isfunction, signature
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
 from typing import Any
@@ -146,10 +147,13 @@ class Case:
         """Function (study, results, store) -> checks of what is stored; None of a case without checks."""
         return getattr(self.module, "examine", None)
 
-    def execute(self, run: Any, tick: Callable[[float], None] = lambda fraction: None) -> tuple[Any, Any]:
-        """Result and arrays of a run, to its end or to where it fails."""
+    def execute(
+        self, run: Any, tick: Callable[[float], None] = lambda fraction: None, checkpoint: Any = None
+    ) -> tuple[Any, Any]:
+        """Result and arrays of a run, to its end or to where it fails; it goes on from a checkpoint if it takes one."""
         module = self.module if is_file(self.name) else import_module(run.computed_by)
-        result, arrays = module.execute(run, tick)
+        kept = {"checkpoint": checkpoint} if "checkpoint" in signature(module.execute).parameters else {}
+        result, arrays = module.execute(run, tick, **kept)
         return result, arrays
 
 
@@ -255,8 +259,9 @@ def told(name: str, word: str, function: Callable[..., Any]) -> Callable[..., An
     """Function of a user's file that raises OwnFileError with one line, whatever it raises or returns."""
     right, spelled = GIVES.get(word, (lambda found: True, ""))
 
-    def call(*given: Any) -> Any:
-        found = guarded(Path(name), lambda: function(*given))
+    @wraps(function)
+    def call(*given: Any, **named: Any) -> Any:
+        found = guarded(Path(name), lambda: function(*given, **named))
         if not right(found):
             raise OwnFileError(f"{name}: {word} must return {spelled}, not {shortened(found)}")
         return found

@@ -9,6 +9,7 @@ from pathlib import Path
 from mpm_verify.solver.source_hash import TOP
 
 PACKAGES = ("mpm-verify", "numpy", "numba", "llvmlite", "sympy", "scipy")
+COMPUTES = ("python", "processor", "numpy", "numba", "llvmlite", "scipy")  # what bits hang on, beside the sources
 
 
 @cache
@@ -21,6 +22,12 @@ def environment() -> dict[str, str]:
         except PackageNotFoundError:
             found[package] = "not installed"
     return {**found, "commit": commit()}
+
+
+def numerics() -> dict[str, str]:
+    """Part of the environment that the bits of a run hang on, beside its sources."""
+    found = environment()
+    return {name: found[name] for name in COMPUTES}
 
 
 def commit() -> str:

@@ -11,13 +11,16 @@ from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExe
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
 from dataclasses import fields
+from math import inf
 from multiprocessing.queues import SimpleQueue as Queue
 from os import _exit  # before a user's file is executed, see solver/own_file.py
 from pathlib import Path
 from typing import Any, ClassVar, TypeVar
 
+from mpm_verify.cases.harness.checkpoint import Checkpoint, News
 from mpm_verify.cases.harness.contract import Case, case_named
 from mpm_verify.cases.harness.store import Store, StoreError
+from mpm_verify.solver.failure import FailureKind
 from mpm_verify.solver.own_file import OwnFileError, blamed, said, shortened
 from mpm_verify.solver.plugins import absolute, is_file, split
 
@@ -48,11 +51,33 @@ def pending(study: Study, store: Store) -> list[Run]:
 
 def to_be_done(run: Run, result: Result) -> bool:
     """Whether a run has no Result yet, or a failed one that counts for nothing."""
-    return result is None or (run.again and result.status == "failed")
+    if result is None or result.status != "failed":
+        return result is None
+    return run.again or result.failure.kind is FailureKind.WORKER_DIED
 
 
-def perform(run: Run, digest: str, folder: Path, threads: int) -> Result:
-    """Run one run in this process and store its Result; not enough memory is not stored.
+def perform(run: Run, digest: str, folder: Path, threads: int, every: float = inf) -> Result:
+    """Run one run in this process and store its Result, with a checkpoint `every` so many seconds.
+
+    Raises as `computed`.
+    """
+    store, checkpoint = Store(folder, run.case), checkpoint_of(folder, digest, every)
+    result, files = computed(run, digest, store, threads, checkpoint)
+    store.put_files(digest, files)
+    checkpoint.remove()
+    return result
+
+
+def checkpoint_of(folder: Path, digest: str, every: float) -> Checkpoint:
+    """Checkpoint of a run in a study's folder; its notes are told as the progress of the run is."""
+    path = Store(folder).runs / f"{digest}.checkpoint"
+    return Checkpoint(path, digest, every, lambda note: Ticker.tell((digest, note)))
+
+
+def computed(
+    run: Run, digest: str, store: Store, threads: int, checkpoint: Checkpoint
+) -> tuple[Result, dict[str, bytes]]:
+    """Run one run in this process: its Result, and the files that store it; not enough memory is no Result.
 
     Raises RunnerError where a user's file does not return what it did when the run was named `digest`, before or after.
     """
@@ -62,11 +87,11 @@ def perform(run: Run, digest: str, folder: Path, threads: int) -> Result:
     if run.digest != digest:
         raise another(run)
     try:
-        result, arrays = case_named(run.case).execute(run, Ticker(digest))
+        result, arrays = case_named(run.case).execute(run, Ticker(digest), checkpoint)
         check_result(case_named(run.case), run, result, arrays)
         if result.digest != digest:
             raise another(run)
-        Store(folder, run.case).put(result, arrays)
+        files = store.files(result, arrays)
     except (RunnerError, StoreError, MemoryError):
         raise
     except (Exception, SystemExit) as error:
@@ -74,7 +99,7 @@ def perform(run: Run, digest: str, folder: Path, threads: int) -> Result:
         if not line:
             raise
         raise OwnFileError(line) from error
-    return result
+    return result, files
 
 
 def blame(run: Run, error: BaseException) -> str:
@@ -120,7 +145,7 @@ def another(run: Run) -> RunnerError:
 class Ticker:
     """Listener of a run that tells its progress, a few times a second at most, to `tell` of this process."""
 
-    tell: ClassVar[Callable[[tuple[str, float]], None]] = staticmethod(lambda news: None)
+    tell: ClassVar[Callable[[News], None]] = staticmethod(lambda news: None)
     PAUSE = 0.25  # seconds
     stopped: ClassVar[bool] = False  # by Ctrl-C, see interruptible
 
@@ -157,6 +182,18 @@ def interruptible() -> Iterator[None]:
         Ticker.stopped = False
 
 
+class Hands:
+    """Way of runs to an executor and of their Results back; processes of this machine store what they have done."""
+
+    def give(self, executor: Executor, run: Run, store: Store, threads: int, every: float) -> "Future[Any]":
+        """Submit a run."""
+        return executor.submit(perform, run, run.digest, store.folder, threads, every)
+
+    def take(self, run: Run, store: Store, future: "Future[Any]") -> Result:
+        """Result of a run that has ended, which is stored. Raises what ended it."""
+        return future.result()
+
+
 def run_study(
     study: Study,
     store: Store,
@@ -164,13 +201,17 @@ def run_study(
     threads: int,
     done: Callable[[Result], None] = lambda result: None,
     poll: Callable[[], None] = lambda: None,
+    every: float = inf,
+    hands: Hands | None = None,
 ) -> dict[str, Result]:
     """Results of the study by digest; those that are stored are read, the others run.
 
-    `done` hears of each new Result, `poll` is called a few times a second. Raises RunnerError where a worker dies,
-    StoreError where a Result cannot be written; what is stored stays.
+    `done` hears of each new Result, `poll` is called a few times a second; a run that can writes a checkpoint `every`
+    so many seconds. Raises RunnerError where a worker dies, StoreError where a Result cannot be written; what is stored
+    stays.
     """
-    waiting = {executor.submit(perform, run, run.digest, store.folder, threads): run for run in pending(study, store)}
+    hands = hands or Hands()
+    waiting = {hands.give(executor, run, store, threads, every): run for run in pending(study, store)}
     defects: list[tuple[Run, Exception]] = []
     try:
         while waiting:
@@ -179,7 +220,7 @@ def run_study(
             for future in finished:
                 run = waiting.pop(future)
                 try:
-                    done(future.result())
+                    done(hands.take(run, store, future))
                 except (StoreError, RunnerError, BrokenProcessPool, MemoryError):
                     raise
                 except Exception as error:  # a defect of ours in one run: the sweep goes on, and says so at its end
@@ -219,15 +260,15 @@ def stored(study: Study, store: Store) -> dict[str, Result]:
 
 
 @contextmanager
-def process_pool(jobs: int, case: str) -> Iterator[tuple[ProcessPoolExecutor, Callable[[], list[tuple[str, float]]]]]:
+def process_pool(jobs: int, case: str) -> Iterator[tuple[ProcessPoolExecutor, Callable[[], list[News]]]]:
     """Worker processes that end with this one, and a function that gives their news since it was last called.
 
     Spawned: a fork of a process that has used OpenMP threads hangs.
     """
     context = multiprocessing.get_context("spawn")
-    news: Queue[tuple[str, float]] = context.SimpleQueue()
+    news: Queue[News] = context.SimpleQueue()
 
-    def heard() -> list[tuple[str, float]]:
+    def heard() -> list[News]:
         items = []
         while not news.empty():
             items.append(news.get())
@@ -245,7 +286,7 @@ def process_pool(jobs: int, case: str) -> Iterator[tuple[ProcessPoolExecutor, Ca
         executor.shutdown(cancel_futures=True)
 
 
-def begin(parent: int, news: "Queue[tuple[str, float]]", case: str) -> None:
+def begin(parent: int, news: "Queue[News]", case: str) -> None:
     """Begin a worker: where to tell news, a watch over the parent, and the records that come from a file.
 
     A worker that outlived its parent would do a run that the parent's successor does too.

@@ -4,15 +4,15 @@ DIR/study.json           the Study
 DIR/runs/<digest>.json   a Result
 DIR/runs/<digest>.npz    its arrays, see the case
 DIR/runs/<digest>.log    what a solver of somebody else printed
+DIR/runs/<digest>.checkpoint   state of a run that is under way, see checkpoint.py
 """
 
 import fcntl
 import io
 import json
 import os
-import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from pathlib import Path
@@ -23,6 +23,7 @@ import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
 from mpm_verify.cases.harness.contract import adapters
+from mpm_verify.cases.harness.files import replacing
 from mpm_verify.cases.harness.invalid import invalid
 from mpm_verify.cases.harness.study import FORMAT, Arrays
 from mpm_verify.solver.plugins import CASES, available, is_file
@@ -71,25 +72,37 @@ def case_of(folder: Path) -> str:
     return str(case)
 
 
+class Disk:
+    """Writes of a store, by this process."""
+
+    def make(self, folder: Path) -> None:
+        """Make a folder. Raises StoreError."""
+        make(folder)
+
+    def write(self, path: Path, data: bytes) -> None:
+        """Write a file atomically. Raises StoreError."""
+        Store.write(path, data)
+
+
 class Store:
     """Results of a case on disk below `folder`. Raises StoreError where it cannot be made, read or written."""
 
-    def __init__(self, folder: Path, case: str = "mms") -> None:
-        self.folder, self.case = folder, case
+    def __init__(self, folder: Path, case: str = "mms", disk: Disk | None = None) -> None:
+        self.folder, self.case, self.disk = folder, case, disk or Disk()
         self.runs = folder / "runs"
 
     def create(self, study: Any) -> None:
         """Make the folder and write study.json; Results already there stay, a broken study.json is not written over."""
-        make(self.runs)
+        self.disk.make(self.runs)
         for leftover in self.runs.glob(".*"):  # of a process that was killed while it wrote
-            with suppress(FileNotFoundError):
+            with suppress(OSError):
                 if time.time() - leftover.stat().st_mtime > HOUR:
                     leftover.unlink()
         if (self.folder / "study.json").exists():
             self.study()
         elif (self.folder / "report.html").exists():
             raise StoreError(f"{self.folder} holds a page of something else; give another --out folder")
-        self.write(self.folder / "study.json", self._text(study, adapters(self.case)[0]))
+        self.disk.write(self.folder / "study.json", self._text(study, adapters(self.case)[0]))
 
     def study(self) -> Any:
         """Study of this folder."""
@@ -102,15 +115,24 @@ class Store:
 
         Raises ValueError, and writes nothing, for what could not be read again.
         """
-        path, text = self.runs / result.digest, self._text(result, adapters(self.case)[1])
+        self.put_files(result.digest, self.files(result, arrays))
+
+    def files(self, result: Any, arrays: Arrays) -> dict[str, bytes]:
+        """Contents of the files of a run by their endings, the Result last. Raises ValueError as `put` does."""
+        text = self._text(result, adapters(self.case)[1])
         texts = {name: found for name, found in arrays.items() if isinstance(found, str)}
         buffer = io.BytesIO()
         np.savez(buffer, allow_pickle=False, **{name: found for name, found in arrays.items() if name not in texts})
-        self.write(path.with_suffix(".npz"), buffer.getvalue())
-        path.with_suffix(".log").unlink(missing_ok=True)  # of the run before, where it failed
-        for name, found in texts.items():
-            self.write(path.with_suffix(f".{name}"), found.encode(errors="replace"))
-        self.write(path.with_suffix(".json"), text)
+        more = {f".{name}": found.encode(errors="replace") for name, found in texts.items()}
+        return {".npz": buffer.getvalue(), **more, ".json": text}
+
+    def put_files(self, digest: str, files: Mapping[str, bytes]) -> None:
+        """Write the files of a run, in their order."""
+        path = self.runs / digest
+        for ending, content in files.items():
+            self.disk.write(path.with_suffix(ending), content)
+            if ending == ".npz" and ".log" not in files:
+                path.with_suffix(".log").unlink(missing_ok=True)  # of the run before, where it failed
 
     def _text(self, record: Any, adapter: TypeAdapter[Any]) -> bytes:
         """A record as it is stored, with the case that it is of. Raises ValueError for one that cannot be read."""
@@ -122,6 +144,11 @@ class Store:
         except ValidationError as error:
             raise ValueError(f"{type(record).__name__} cannot be stored: {invalid(error)}") from None
         return text
+
+    def abandoned(self, study: Any) -> list[str]:
+        """Names of the checkpoints that are of no run of the study."""
+        known = {run.digest for run in study.runs}
+        return sorted(file.name for file in self.runs.glob("[!.]*.checkpoint") if file.stem not in known)
 
     def log(self, digest: str) -> Path | None:
         """File of what a solver of somebody else printed in that run, if it printed anything."""
@@ -164,13 +191,15 @@ class Store:
     @contextmanager
     def locked(self) -> Iterator[None]:
         """Hold the folder for this process; another that asks meanwhile gets a StoreError, and not the same runs."""
-        make(self.runs)
+        self.disk.make(self.runs)
         handle = os.open(self.folder, os.O_RDONLY)  # the folder itself: a file for it would be one more in the study
         try:
             fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError as error:
+        except BlockingIOError as error:
             os.close(handle)
             raise StoreError(f"another verify works in {self.folder}; wait for it or give another --out") from error
+        except OSError:
+            pass  # a file system without locks on folders, such as NFS
         try:
             yield
         finally:
@@ -180,15 +209,7 @@ class Store:
     def write(path: Path, data: bytes) -> None:
         """Write a file atomically: a reader sees the old file or the whole new one, whenever the power goes."""
         try:
-            temporary = path.with_name(f".{path.name}.{os.getpid()}.{threading.get_ident()}")
-            try:
-                with temporary.open("wb") as file:
-                    file.write(data)
-                    file.flush()
-                    os.fsync(file.fileno())
-                os.replace(temporary, path)
-            except BaseException:
-                temporary.unlink(missing_ok=True)
-                raise
+            with replacing(path) as file:
+                file.write(data)
         except OSError as error:
             raise StoreError(f"cannot write {path}: {error.strerror}; results stored before are kept") from error

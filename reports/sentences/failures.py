@@ -22,6 +22,7 @@ CAUSES = {
     FailureKind.UNREADABLE: "the solver has written a file that cannot be read",
     FailureKind.NO_COLUMN: "the solver has left out a column",
     FailureKind.OTHER_PARTICLES: "the solver has written other particles than it was given",
+    FailureKind.WORKER_DIED: "the worker died each time, for want of memory perhaps",
     FailureKind.NOT_RUN: "not run yet",
     FailureKind.OSCILLATES: "the values go to and fro",
     FailureKind.NO_ERROR: "no error",
@@ -54,6 +55,8 @@ def cause(failure: Failure) -> str:
         return f"the particle's domain is wider than {limit}"
     if failure.kind is FailureKind.TIME_LIMIT and n:
         return f"the solver took longer than {n['seconds']:g} s"
+    if failure.kind is FailureKind.WORKER_DIED and n:
+        return f"{n['times']:g} workers died in it, for want of memory perhaps"
     return theirs(failure) or kind(failure.kind)
 
 

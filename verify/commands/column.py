@@ -6,7 +6,8 @@ from typing import Any
 import typer
 
 from mpm_verify.cases.column.run import ColumnRun
-from mpm_verify.verify.options import Vtk, study_command, values
+from mpm_verify.verify.options import Minutes, Vtk, study_command, values
+from mpm_verify.verify.run import CHECKPOINT
 
 
 def column(asked: dict[str, list[str]], out: Path | None, **more: Any) -> int:
@@ -22,4 +23,4 @@ def column(asked: dict[str, list[str]], out: Path | None, **more: Any) -> int:
 
 def add(app: typer.Typer) -> None:
     """Add the command, with an option for each field of a run."""
-    study_command(app, "column", ColumnRun, column, {}, {"vtk": (Vtk, False)})
+    study_command(app, "column", ColumnRun, column, {}, {"vtk": (Vtk, False), "checkpoint": (Minutes, CHECKPOINT)})

@@ -6,7 +6,8 @@ from typing import Annotated, Any
 import typer
 
 from mpm_verify.cases.harness.shipped import shipped
-from mpm_verify.verify.options import Vtk, common
+from mpm_verify.verify.options import Minutes, Vtk, common
+from mpm_verify.verify.run import CHECKPOINT
 
 
 def sweep(
@@ -19,6 +20,7 @@ def sweep(
         ),
     ],
     vtk: Vtk = False,
+    checkpoint: Minutes = CHECKPOINT,
     *,
     out: Path | None,
     **more: Any,
@@ -30,7 +32,7 @@ def sweep(
         from mpm_verify.cases.harness.study_file import read
 
         read_ = read(study, command())
-    return conduct(read_, Settings(named(read_, out), vtk=vtk, **more))
+    return conduct(read_, Settings(named(read_, out), vtk=vtk, checkpoint=checkpoint, **more))
 
 
 def add(app: typer.Typer) -> None:

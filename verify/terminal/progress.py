@@ -2,17 +2,27 @@
 
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any
 
+from mpm_verify.cases.harness.checkpoint import News, Note
 from mpm_verify.cases.harness.runner import Result, Run
+from mpm_verify.reports.sentences.checkpoints import note
 
 
 class Silent:
-    """Listener that says nothing."""
+    """Listener that prints what a run has to tell, and nothing else."""
 
-    def hear(self, news: Sequence[tuple[str, float]]) -> None:
-        """Hear of runs under way: digests, each with the fraction that is done."""
+    def hear(self, news: Sequence[News]) -> None:
+        """Hear of runs under way: digests, each with the fraction that is done, or with a note."""
+        for digest, told in news:
+            if isinstance(told, Note):
+                say(note(told))
+            else:
+                self.move(digest, told)
+
+    def move(self, digest: str, fraction: float) -> None:
+        """Hear what fraction of a run is done."""
 
     def done(self, result: Result) -> None:
         """Hear that a run has ended."""
@@ -26,9 +36,9 @@ class Bar(Silent):
         self.task = bar.add_task("", total=sum(self.costs.values()), runs=0, of=len(waiting), last="")
         self.finished = 0
 
-    def hear(self, news: Sequence[tuple[str, float]]) -> None:
+    def move(self, digest: str, fraction: float) -> None:
         """Move the bar."""
-        self.fractions.update(news)
+        self.fractions[digest] = fraction
         self.bar.update(self.task, completed=sum(self.costs[digest] * part for digest, part in self.fractions.items()))
 
     def done(self, result: Result) -> None:
@@ -36,7 +46,14 @@ class Bar(Silent):
         self.finished += 1
         last = f"{result.run}: {result.status}"
         self.bar.update(self.task, runs=self.finished, last=last)
-        self.hear([(result.digest, 1.0)])
+        self.move(result.digest, 1.0)
+
+
+def say(line: str) -> None:
+    """Print a line on standard error, if there is one and anybody reads it."""
+    if line and sys.stderr is not None:
+        with suppress(OSError, ValueError):
+            print(f"verify: {line}", file=sys.stderr, flush=True)
 
 
 @contextmanager
