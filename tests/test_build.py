@@ -42,6 +42,12 @@ SAMPLES: dict[str, dict[str, str]] = {  # of each case two values of each field,
         "courant": "0.4,0.2", "transfer": "flip,apic", "amplitude": "1e-6,0.001", "periods": "2,3",
         "offset": "0.25,-0.125",
     },
+    "box": {
+        "method": "cpdi,gimp", "material": "mohr_coulomb:psi=0,drucker_prager:psi=0", "cells": "4,8", "ppc": "4,9",
+        "transfer": "flip,pic", "smoothing": "none,volumetric", "damping": "0,0.05", "drop": "0,0.08",
+        "jitter": "0,0.3", "seed": "1,2", "courant": "0.4,0.2", "duration": "0.1,0.2", "width": "0.0905,0.2",
+        "aspect": "3,4", "limit": "0.5,inf", "g": "10,9.81", "control": "no,yes",
+    },
     "column": {
         "method": "cpdi,gimp", "cells": "4,8", "ppc": "4,9", "material": "mohr_coulomb,ubcsand", "damping": "0,0.05",
         "damping_kind": "local,objective", "smoothing": "none,volumetric", "transfer": "flip,pic",
