@@ -20,6 +20,7 @@ from mpm_verify.solver.failure import RunFailed
 from mpm_verify.solver.layout import rectangle
 from mpm_verify.solver.model import no_load
 from mpm_verify.solver.plugins import MATERIALS, METHODS, SMOOTHINGS, TRANSFERS, create, optional
+from mpm_verify.solver.pooling import Pooling
 from mpm_verify.solver.state import Grid
 from mpm_verify.solver.step import Model, Scheme, advance, check_time_step
 from mpm_verify.solver.voids import remembering
@@ -48,6 +49,7 @@ def setup(run: Run) -> tuple[Model, int]:
     model = Model(
         grid, particles, basis, material, walls, dt, Scheme(create(TRANSFERS, run.transfer), deformation="exponential"),
         Damping(run.damping) if run.damping else None, optional(SMOOTHINGS, run.smoothing),
+        pooling=Pooling() if run.pooling else None,
     )  # fmt: skip
     return model, steps
 

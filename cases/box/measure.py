@@ -3,7 +3,7 @@
 Rows are sevenths of the column's height, the last one open above. Of a row of height h
 
     weight    sum V sigma_yy / h over the sum of m g r, r rising from 0 at its lower edge to 1 at its upper one
-    K         sum V sigma_xx over sum V sigma_yy
+    K         sum V sigma_xx over sum V sigma_yy; K_low of all rows with their middle below two thirds of the height
 
 In equilibrium the first is 1 to round-off where weights are hats and edges of rows are those of cells: the sum of the
 forces at the nodes above, whose weights add up to r in the lowest row of cells. Top: in each strip of a cell's width
@@ -21,6 +21,7 @@ from mpm_verify.solver.model import Model, Observer
 from mpm_verify.solver.state import Floats
 
 LOOKS = 400  # of a run
+LOW = round(ROWS * 2 / 3)  # rows with their middle below two thirds of the height
 SETTLED = 0.9  # of the duration: from then on looks are averaged, over some periods of the column's own oscillation
 
 
@@ -39,6 +40,7 @@ def measured(run: Run, x: Floats, m: Floats, V: Floats, sigma: Floats) -> dict[s
         "largest": float(-sigma[:, 1].min() / lowest) if lowest > 0 else nan,
         "weight": weight,
         "K": K,
+        "K_low": float(carried[0][:LOW].sum() / carried[1][:LOW].sum()) if lowest > 0 else nan,
     }
 
 

@@ -21,6 +21,7 @@ class Run(RunRecord):
     ppc: int = axis(9, "Particles per cell, square numbers.")
     transfer: str = axis("flip", "Transfer between particles and grid.", TRANSFERS)
     smoothing: str = axis("none", "none, or smoothing of rates and stresses.", SMOOTHINGS)
+    pooling: bool = axis(False, "Pool void strain and compression in each cell after each step.")
     damping: float = axis(0.05, "Fraction of the unbalanced force at each node.")
     drop: float = axis(0.08, "Height of the fall, m.")
     jitter: float = axis(0.3, "Largest shift of a particle along each axis, in spacings.")
@@ -92,7 +93,7 @@ class Run(RunRecord):
     def __str__(self) -> str:
         told = f"{label(self.method)}, {self.cells} cells wide, {self.ppc} per cell"
         told += f", {label(self.smoothing)} smoothing" * (self.smoothing != "none")
-        return told + ", failing control" * self.control
+        return told + ", pooled" * self.pooling + ", failing control" * self.control
 
 
 @dataclass(frozen=True, kw_only=True)

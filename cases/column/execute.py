@@ -35,6 +35,7 @@ from mpm_verify.solver.failure import RunFailed
 from mpm_verify.solver.friction import FrictionalWalls, frictional
 from mpm_verify.solver.layout import rectangle
 from mpm_verify.solver.plugins import MATERIALS, METHODS, SMOOTHINGS, TRANSFERS, create, optional
+from mpm_verify.solver.pooling import Pooling
 from mpm_verify.solver.state import Floats, Grid, Particles
 from mpm_verify.solver.step import Material, Model, Observer, Scheme, advance, check_time_step
 from mpm_verify.solver.voids import remembering
@@ -66,6 +67,7 @@ def setup(run: ColumnRun) -> tuple[Model, int]:
         Scheme(create(TRANSFERS, run.transfer), deformation=run.deformation),  # type: ignore[arg-type]
         Damping(run.damping, run.damping_kind) if run.damping else None,  # type: ignore[arg-type]
         optional(SMOOTHINGS, run.smoothing),
+        pooling=Pooling() if run.pooling else None,
     )  # fmt: skip
     return model, steps
 

@@ -10,7 +10,8 @@ from matplotlib.collections import PolyCollection
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
 
-from mpm_verify.cases.box.case import AROUND, FREE, THIRDS, TOP, WEIGHT, K
+from mpm_verify.cases.box.case import AROUND, FREE, TOP, WEIGHT, K
+from mpm_verify.cases.box.measure import LOW
 from mpm_verify.cases.box.run import ROWS, Run
 from mpm_verify.reports.figures import style
 
@@ -70,7 +71,7 @@ def rows(runs: Sequence[Drawn]) -> Figure:
         figure = Figure(figsize=(7.6, 4.6), layout="constrained")
         weight, ratio = figure.subplots(1, 2, sharey=True)
         weight.axvspan(1 - WEIGHT, 1 + WEIGHT, color=BAND, linewidth=0)
-        ratio.axvspan(K - AROUND, K + AROUND, ymax=THIRDS, color=BAND, linewidth=0)
+        ratio.axvspan(K - AROUND, K + AROUND, ymax=LOW / ROWS, color=BAND, linewidth=0)
         middles = (np.arange(ROWS) + 0.5) / ROWS
         for number, (label, _, arrays) in enumerate(runs):
             for axes, key in ((weight, "weight"), (ratio, "K")):

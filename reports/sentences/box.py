@@ -14,9 +14,9 @@ SAND = (
     "that of the whole column at the floor, where sand at rest has 1; the dashes are at the height of the column."
 )
 ROWS = (
-    "Rows are sevenths of the column, means over the last tenth of the time. Shaded: what is asked, of K below two "
-    "thirds of the height. The sums on the left are those of the forces on the grid, and say nothing of single "
-    "particles."
+    "Rows are sevenths of the column, means over the last tenth of the time. Shaded: what is asked, of K for the rows "
+    "below two thirds of the height together. The sums on the left are those of the forces on the grid, and say "
+    "nothing of single particles."
 )
 TIMES = "How it came to rest. Shaded: what is asked at the end."
 NOTES = (
