@@ -12,6 +12,9 @@ and each opened particle has the mean that they had, r (sum V0 sigma)/(sum V0), 
 both exchanged, and nothing carries stress where what is open has none. F takes exp(change of w / 2), so that sum V0
 ln J of the cell is kept, and domains follow. A particle alone in its cell stays as it is.
 
+Every other step the cells are those that are half a cell further on both axes, around the nodes. Otherwise a cell that
+is open as a whole stays open where others carry it, and who is alone stays alone: a tenth of the sand at rest.
+
 New stresses are sums of old ones with weights that add up to 1 at most, so they stay in any strength that is convex
 and holds no stress at all, with cohesion too; and elastic energy, which is convex, can only fall. With moduli that
 follow the stress this holds for the strains, and stresses keep their directions. The energy that is taken is counted.
@@ -35,11 +38,14 @@ FLAGS = flag[::1]
 
 @kernel(nothing(F2, F1, f8, i8, i8, I1))
 def cells_of(x, origin, inv_dx, nx, ny, cell):
-    """Write the number of the cell of each position x (P,2), -1 outside the grid and where it is not a number."""
+    """Write the number of the cell of each position x (P,2), -1 outside the grid and where it is not a number.
+
+    The origin may lie half a cell before that of the grid.
+    """
     for p in range(x.shape[0]):
         i = np.floor((x[p, 0] - origin[0]) * inv_dx)
         j = np.floor((x[p, 1] - origin[1]) * inv_dx)
-        inside = i >= 0.0 and i < nx - 1.0 and j >= 0.0 and j < ny - 1.0
+        inside = i >= 0.0 and i < nx and j >= 0.0 and j < ny
         cell[p] = np.int64(i) * ny + np.int64(j) if inside else -1
 
 
@@ -163,7 +169,8 @@ class Pooling:
             self.sums = np.zeros((grid.nx * grid.ny, SUMS))
         column = material.memory.index("void") if "void" in material.memory else -1
         cell, w, renewed = np.empty(len(p), np.int64), np.zeros(len(p)), np.zeros(len(p), np.bool_)
-        cells_of(context.basis.on_grid(p), grid.origin, 1.0 / grid.dx, grid.nx, grid.ny, cell)
+        origin = grid.origin - 0.5 * grid.dx * (context.steps % 2)
+        cells_of(context.basis.on_grid(p), origin, 1.0 / grid.dx, grid.nx, grid.ny, cell)
         gather(own.volume, own.constants, cell, p.V0, p.sigma, p.history, column, w, self.sums)
         self.taken += settle(
             own.volume, own.scale, own.stored, own.constants, cell, p.V0, p.F_old, p.sigma, p.F, p.history, column, w,

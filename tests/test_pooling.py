@@ -204,6 +204,25 @@ def test_ubcsand_mobilises_what_it_has_and_loads_as_if_new() -> None:
     assert (p.history[carries, 0] >= t[carries] / s[carries] - 1e-12).all()
 
 
+def test_every_other_step_the_cells_are_those_around_the_nodes() -> None:
+    """Two that share no cell of the grid and are around one node are pooled in odd steps alone, and keep their sum."""
+    for steps, pooled in ((0, False), (1, True), (2, False)):
+        m = body(SANDS[0], ppc=1)
+        p = m.particles
+        p.x[:] = [0.55, 0.55]
+        p.x[:, 0] += 5.0  # outside the grid, where nothing is pooled
+        p.x[:2] = [[0.49, 0.5], [0.51, 0.5]]
+        p.sigma[0], p.sigma[1], p.history[0, 2], p.history[1, 2] = 0.0, [-4e3, -8e3, -4e3, 0.0], 1e-3, 0.0
+        m.steps, before = steps, strains(m)
+        assert m.pooling
+        m.pooling.pool(m)
+        after = strains(m)
+        assert (p.history[0, 2] == 0.0) == pooled
+        assert (p.sigma[0] != 0.0).any() == pooled
+        np.testing.assert_array_equal(after[2:], before[2:])
+        assert (p.V0 * after).sum() == pytest.approx((p.V0 * before).sum(), rel=1e-13)
+
+
 def test_refusals() -> None:
     for name, says in (("neo_hookean", "a material that opens"), ("ubcsand:void=1,me=0.5", "ne = me")):
         with pytest.raises(ValueError, match=says):
