@@ -115,3 +115,12 @@ def sentence(text: str) -> str:
 def count(number: int, noun: str) -> str:
     """Count with its noun: `1 run`, `2 runs`."""
     return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+
+
+def paragraphs(document: str) -> list[str]:
+    """Paragraphs of a docstring, each in one line; lines that are set in, as formulas are, stay apart."""
+    texts: list[str] = []
+    for block in document.split("\n\n"):
+        formula = all(line.startswith("    ") for line in block.splitlines())
+        texts += [line.strip() for line in block.splitlines()] if formula else [" ".join(block.split())]
+    return texts

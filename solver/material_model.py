@@ -31,6 +31,8 @@ class Material:
         stiffness follows it.
     stored_energy
         ``stored_energy(sigma)``: elastic energy per volume (P,) under sigma (P,4).
+    compression
+        ``compression()``: volume strain that stress holds (solver/compression.py), of a model that opens, for pooling.
     memory
         Names of the columns of particles.history; "void" is the void strain, solver/voids.py.
     sums
@@ -57,6 +59,7 @@ class Material:
     kirchhoff: ClassVar[bool] = False
     moduli: Callable[[float], tuple[float, float]] | None = None
     stored_energy: Callable[[Floats], Floats] | None = None
+    compression: Callable[[], Any] | None = None
     memory: ClassVar[tuple[str, ...]] = ()
     sums: ClassVar[tuple[str, ...]] = ()
     small_strain: ClassVar[bool] = False

@@ -15,6 +15,7 @@ from mpm_verify.solver.transfers.flip import Flip
 
 if TYPE_CHECKING:  # their kernels take seconds to compile, and most runs have neither
     from mpm_verify.solver.damping import Damping
+    from mpm_verify.solver.pooling import Pooling
     from mpm_verify.solver.smoothing._base import Smoothing
     from mpm_verify.solver.surface import Surface
 
@@ -106,6 +107,8 @@ class Model(Context):
         Smoothing of strain and stress, None for none.
     surface
         Edge of the body that is pulled or driven, None for none.
+    pooling
+        Pooling of void strain and compression after each step, None for none.
     steps
         Steps done; `time` is steps * dt, the time level of x, F and sigma. In a staggered run v has the level dt/2
         before it.
@@ -113,13 +116,14 @@ class Model(Context):
     Raises
     ------
     ValueError
-        For a material that cannot be smoothed.
+        For a material that cannot be smoothed, or pooled.
     """
 
     scheme: Scheme = Scheme()
     damping: "Damping | None" = None
     smoothing: "Smoothing | None" = None
     surface: "Surface | None" = None
+    pooling: "Pooling | None" = None
     damped: float = 0.0  # energy that damping has taken so far
     hooks: dict[str, list[Callable[["Model"], None]]] = field(init=False)
 
@@ -128,6 +132,8 @@ class Model(Context):
         self.hooks = {hook: [] for hook in HOOKS}
         if self.smoothing:
             self.smoothing.check(self.material)
+        if self.pooling:
+            self.pooling.start(self.material)
         self.material.start(self.particles)
         self.slabs.sort(self.grid, self.particles, self.basis.on_grid(self.particles))
         self.scheme.transfer.start(self)

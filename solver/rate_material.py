@@ -12,7 +12,7 @@ from mpm_verify.solver.kirchhoff import weighted
 from mpm_verify.solver.material_model import Material
 from mpm_verify.solver.objective import Rate, integrate
 from mpm_verify.solver.plugins import NEGATIVE_CONTROLS, RATES, USUAL_RATE, available, load
-from mpm_verify.solver.state import Floats, Particles
+from mpm_verify.solver.state import Floats, Ints, Particles
 
 
 @dataclass(frozen=True)
@@ -47,6 +47,9 @@ class RateMaterial(Material):
     def initial(self, sigma: Floats) -> Floats:
         """History (P,H) of particles under the stress sigma (P,4) that have seen nothing yet."""
         return np.zeros((len(sigma), len(self.memory)))
+
+    def renew(self, particles: Particles, rows: Ints) -> None:
+        """Write the history of particles in `rows` that pooling gave another stress: nothing, unless it is of it."""
 
     def start(self, particles: Particles) -> None:
         """Write F at the start of the first step, history and work, unless they go on from an earlier run."""

@@ -40,6 +40,8 @@ def advance(model: Model, load: Load) -> None:
     """
     load(model.particles, model.time)
     STRESS_UPDATES[model.scheme.stress](model)
+    if model.pooling:
+        model.pooling.pool(model)
     model.steps += 1
     model.tell("after_step")
 

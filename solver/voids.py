@@ -7,6 +7,9 @@ been apart, and a particle that came back from a thousandfold volume would do so
 correction of Tampubolon et al. 2017, doi:10.1145/3072959.3073651, for materials that are functions of F.
 """
 
+from dataclasses import replace
+from typing import Any
+
 from mpm_verify.solver._jit import kernel
 
 
@@ -28,3 +31,8 @@ def check_void(void: float, c: float) -> None:
         raise ValueError(f"void = {void} must be 0 or 1")
     if void and c:
         raise ValueError(f"void=1 must have c = 0: what has cohesion does not part at the apex, not c = {c}")
+
+
+def remembering(material: Any) -> Any:
+    """Material with void-strain memory, where it has one and no cohesion; itself otherwise."""
+    return replace(material, void=1.0) if "void" in material.memory and not material.cohesion else material

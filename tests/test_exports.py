@@ -147,6 +147,20 @@ def test_what_cannot_be_compared(verify: Call, pair: tuple[Path, Path], tmp_path
 
 
 SMALL = {
+    "box": [
+        "--cells",
+        "2",
+        "--aspect",
+        "3.5",
+        "--ppc",
+        "4",
+        "--drop",
+        "0",
+        "--duration",
+        "0.02",
+        "--control",
+        "no,yes",
+    ],
     "column": ["--cells", "2", "--aspect", "2", "--channel", "4", "--duration", "0.01", "--ppc", "1,4"],
     "element": ["linear_elastic", "--test", "isotropic,biaxial", "--steps", "2"],
     "wave_bar": ["--cells", "4,8", "--ppc", "1"],
@@ -232,7 +246,7 @@ def test_two_columns_of_one_name_are_an_error() -> None:
         joined({"digest": "a"}, {"damping": 0.1}, {"damping": 3.0})
 
 
-@pytest.mark.parametrize("case", ["mms", "column", "element", "objectivity", "wave_bar"])
+@pytest.mark.parametrize("case", ["mms", "box", "column", "element", "objectivity", "wave_bar"])
 def test_every_case_has_a_table_of_runs(case: str, tmp_path: Path) -> None:
     """No field of a run has the name of what is measured of it."""
     from mpm_verify.cases.harness.study import ResultRecord, Study

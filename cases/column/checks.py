@@ -22,6 +22,7 @@ from mpm_verify.solver.plugins import METHODS, SMOOTHINGS, TRANSFERS, create, lo
 OVER = "over the initial potential energy"
 BUDGET, DRIFT, BACK = 0.01, 1e-9, 1e-3  # of a work that is approximate, and of sums that are exact
 MASS, STABLE = 1e-12, 0.95
+BOOKS, AREA = 1e-3, 0.03  # of strains whose sum is of third order in the step; of a surface of 99 % of the mass
 LONG = 0.7  # cells, half diagonal of a domain
 
 
@@ -29,6 +30,7 @@ def checks(study: ColumnStudy, ran: Sequence[FinishedRun]) -> list[Check]:
     """Checks of the runs that came to their end."""
     smooth = [one for one in ran if holds_work(one.run)]
     counted = [one for one in ran if not plugin(TRANSFERS, one.run.transfer).filters_walls]
+    pooled = [one for one in ran if one.run.pooling]
     filtered = [one for one in ran if plugin(TRANSFERS, one.run.transfer).filters_walls]
     asked: list[tuple[str, Sequence[FinishedRun], list[float], float, str]] = [
         (f"energy budget, largest residual {OVER}", counted, [one.values["unbalanced"] for one in counted], DRIFT,
@@ -41,6 +43,12 @@ def checks(study: ColumnStudy, ran: Sequence[FinishedRun]) -> list[Check]:
          "dissipation"),
         ("momentum less that given by gravity, walls and damping, over m sqrt(2 g h)", counted,
          [missing(one) for one in counted], DRIFT, "conservation"),
+        (f"elastic energy that pooling gives, {OVER}", pooled, [-one.values["pooled"] / energy(one) for one in pooled],
+         DRIFT, "convexity"),
+        ("ln J less dilation, void and elastic strain, mean", pooled, [abs(one.values["unbooked"]) for one in pooled],
+         BOOKS, "sum of strains"),
+        ("area over volume ratio / crowding, less 1", pooled, [abs(one.values["booked"] - 1) for one in pooled], AREA,
+         "volume of the heap, measured twice"),
         ("mass at the nodes over that of the particles, less 1", ran, [one.values["most_mass_lost"] for one in ran],
          MASS, "partition of unity"),
         ("Courant number with the stiffness and speed of the moment", ran, [one.values["most_courant"] for one in ran],
@@ -68,6 +76,11 @@ def holds_work(run: ColumnRun) -> bool:
 def plugin(package: str, specification: str) -> Any:
     """Class of a plug-in, without its parameters."""
     return load(package, split(specification)[0])
+
+
+def energy(one: FinishedRun) -> float:
+    """Initial potential energy."""
+    return one.values["mass"] * one.run.g * one.run.height / 2
 
 
 def named(study: ColumnStudy, run: ColumnRun) -> str:

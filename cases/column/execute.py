@@ -35,8 +35,10 @@ from mpm_verify.solver.failure import RunFailed
 from mpm_verify.solver.friction import FrictionalWalls, frictional
 from mpm_verify.solver.layout import rectangle
 from mpm_verify.solver.plugins import MATERIALS, METHODS, SMOOTHINGS, TRANSFERS, create, optional
+from mpm_verify.solver.pooling import Pooling
 from mpm_verify.solver.state import Floats, Grid, Particles
 from mpm_verify.solver.step import Material, Model, Observer, Scheme, advance, check_time_step
+from mpm_verify.solver.voids import remembering
 from mpm_verify.solver.weights import Basis
 
 FRAMES, SNAPSHOTS = 57, 8  # of a run: positions of particles, all fields
@@ -65,6 +67,7 @@ def setup(run: ColumnRun) -> tuple[Model, int]:
         Scheme(create(TRANSFERS, run.transfer), deformation=run.deformation),  # type: ignore[arg-type]
         Damping(run.damping, run.damping_kind) if run.damping else None,  # type: ignore[arg-type]
         optional(SMOOTHINGS, run.smoothing),
+        pooling=Pooling() if run.pooling else None,
     )  # fmt: skip
     return model, steps
 
@@ -91,8 +94,7 @@ def material_of(run: ColumnRun) -> Material:
     material: Any = create(MATERIALS, run.material)
     if material.respond is None:
         raise ValueError(f"the column must have a material in rate form, not {run.material}; choose mohr_coulomb")
-    parts = run.void and "void" in material.memory and not material.cohesion
-    made: Material = replace(material, void=1.0) if parts else material
+    made: Material = remembering(material) if run.void else material
     return made
 
 

@@ -79,26 +79,28 @@ class Measure(Observer):
             **strength(model),
             **scaled(model),
             "crowding": crowding(x, p.V0 * p.J, self.run.strip),
+            **books(model),
         }
         row["courant"] = model.dt / model.grid.dx * (model.material.wave_speed(row["largest_s"]) + row["fastest"])
         self.rows.append(row)
         self.profiles.append(profile)
 
     def split(self, model: Model, work: float) -> dict[str, float]:
-        """Elastic and plastic part of the work of stress.
+        """Elastic and plastic part of the work of stress, and what pooling has taken of it.
 
         Linear elasticity stores an energy, and the rest is plastic. UBCSAND, whose moduli follow s, has none: there the
         material gives the plastic work, per volume as it is, and the rest is called elastic.
         """
         p, stored = model.particles, model.material.stored_energy
+        pooled = model.pooling.taken if model.pooling else 0.0
         if stored:
             elastic = float((p.V0 * p.J * stored(p.sigma)).sum())
-            return {"elastic": elastic, "plastic": work - elastic}
+            return {"elastic": elastic, "plastic": work - elastic - pooled, "pooled": pooled}
         now = worked(model)
         volume = p.in_initial_order("V0") * p.in_initial_order("J")
         self.plastic += float((volume * (now - self.worked)).sum())
         self.worked = now
-        return {"elastic": work - self.plastic, "plastic": self.plastic}
+        return {"elastic": work - self.plastic - pooled, "plastic": self.plastic, "pooled": pooled}
 
     def curves(self) -> dict[str, Floats]:
         """Columns of the rows, and `profile` (T,strips)."""
@@ -206,6 +208,21 @@ def scaled(model: Model) -> dict[str, float]:
     }
 
 
+def books(model: Model) -> dict[str, float]:
+    """Means over the body: volume ratio, plastic dilation, and `unbooked`, what no strain accounts for in ln J.
+
+    ln J is elastic volume, plastic dilation and void strain; pooling moves them between particles and keeps the mean.
+    """
+    p, memory = model.particles, model.material.memory
+    whole, J = float(p.V0.sum()), p.J
+    found = {"volume": float((p.V0 * J).sum()) / whole, "dilated": 0.0, "unbooked": 0.0}
+    if model.material.compression is None:
+        return found
+    dilated, void = (p.history[:, memory.index(name)] for name in ("eps_v_p", "void"))
+    rest = np.log(J) - dilated - void + model.material.compression().held(p.sigma)
+    return found | {"dilated": float((p.V0 * dilated).sum()) / whole, "unbooked": float((p.V0 * rest).sum()) / whole}
+
+
 def final(run: ColumnRun, curves: dict[str, Floats]) -> dict[str, float]:
     """Numbers of a run: those at its end, the largest of some, and when it came to rest.
 
@@ -214,6 +231,7 @@ def final(run: ColumnRun, curves: dict[str, Floats]) -> dict[str, float]:
     `area`: under the final profile, over that of the column: 1 and what it has dilated, or less where it has shrunk.
     Fractions of the initial potential energy, largest at any time: `unbalanced`, of the budget; `misworked`, between
     the work of the material and that of the forces; `lost` by the method; `plastic_falls`, that plastic work gave back.
+    `booked`: area over the mean volume ratio divided by crowding, 1 where the measures of the heap agree.
     `creep`: how much the height still changed in the last fifth of the time, as a fraction of it.
     """
     values = {name: float(column[-1]) for name, column in curves.items() if name != "profile"}
@@ -244,4 +262,5 @@ def final(run: ColumnRun, curves: dict[str, Floats]) -> dict[str, float]:
     values["plastic_falls"] = float((np.maximum.accumulate(plastic) - plastic).max()) / first
     values["run_out"] = values["front_99"] / run.width - 1
     values["area"] = float(curves["profile"][-1].sum()) * run.strip / (run.width * run.height)
+    values["booked"] = values["area"] * values["crowding"] / values["volume"]
     return values

@@ -26,7 +26,8 @@ class ColumnRun(RunRecord):
     fractions of their spacing; `mirror`
     puts the wall to the right. What keeps the column alive: `limit` of the half diagonals of CPDI domains, in cells
     (inf: none; never below what a particle begins with), `void`-strain memory of materials that have one and no
-    cohesion, and the exponential `deformation`. Raises ValueError with one line for what no column has.
+    cohesion, and the exponential `deformation`. `pooling`: solver/pooling.py.
+    Raises ValueError with one line for what no column has.
     """
 
     method: str = axis("cpdi", "Basis of the method.", METHODS)
@@ -37,6 +38,7 @@ class ColumnRun(RunRecord):
     damping_kind: str = axis("local", "local (component by component) or objective.", choices=KINDS)
     smoothing: str = axis("none", "none, or smoothing of rates and stresses.", SMOOTHINGS)
     transfer: str = axis("flip", "Transfer between particles and grid.", TRANSFERS)
+    pooling: bool = axis(False, "Pool void strain and compression in each cell after each step.")
     deformation: str = axis(
         "exponential", "Update of F: exponential, or linear as printed.", choices=("exponential", "linear")
     )
@@ -121,6 +123,7 @@ class ColumnRun(RunRecord):
         parts = [label(self.method), f"cells={self.cells}", f"ppc={self.ppc}"]
         parts += [f"damping={self.damping:g}"] * bool(self.damping)
         parts += [f"smoothing={label(self.smoothing)}"] * (self.smoothing != "none")
+        parts += ["pooled"] * self.pooling
         return ", ".join(parts)
 
     @property

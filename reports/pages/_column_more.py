@@ -86,6 +86,19 @@ def films(analysis: ColumnAnalysis, store: Store, add: Add, ran: Sequence[tuple[
     return Section("pictures", "The collapse", figures=[(image, caption)], films=reels, wide=True)
 
 
+def books(analysis: ColumnAnalysis) -> Section:
+    """Section on the volume of the heap at the end: what it is made of, and the space that it takes."""
+    head = ("run", "plastic dilation", "void strain", "det F", "unaccounted for", "crowding",
+            "det F / crowding", "area", "height falls")  # fmt: skip
+    rows = []
+    for one in analysis.ran:
+        v = one.values
+        parts = (f"{v['dilated']:.4f}", f"{v['void_strain']:.4f}", f"{v['volume']:.4f}", f"{abs(v['unbooked']):.1e}")
+        space = (f"{v['crowding']:.3f}", f"{v['volume'] / v['crowding']:.3f}", f"{v['area']:.3f}")
+        rows.append((words.label(analysis.study, one.run), *parts, *space, percent(v["creep"])))
+    return Section("volume", "Volume of the heap", [words.BOOKS], tables=[Table("Means at the end", head, tuple(rows))])
+
+
 def alive(analysis: ColumnAnalysis) -> Section:
     """Section on what limits, void strain and smoothing do to the runs, failed ones too."""
     head = ("run", "limit [cells]", "limited domains", "with void strain", "without stress", "void strain", "det F",

@@ -13,7 +13,7 @@ from mpm_verify.reports.components.show import Table
 from mpm_verify.reports.export.column_files import files, tables
 from mpm_verify.reports.figures import column as draw
 from mpm_verify.reports.frames import Record
-from mpm_verify.reports.pages._column_more import alive, films, refinement, set_up
+from mpm_verify.reports.pages._column_more import alive, books, films, refinement, set_up
 from mpm_verify.reports.sentences import column as words
 from mpm_verify.reports.sentences import failures
 from mpm_verify.reports.words import DASH, percent
@@ -50,6 +50,8 @@ def sections(analysis: ColumnAnalysis, store: Store, add: Add) -> Sequence[Secti
         found += [set_up(store, add, *kept[0]), films(analysis, store, add, kept)]
     if analysis.results:
         found.append(alive(analysis))
+    if any(one.run.pooling for one in analysis.ran):
+        found.append(books(analysis))
     return [*found, Section("checks", "Invariants, whatever the experiment says", tables=[
         checks_table("Checks", analysis.examination.checks, group=True)])]  # fmt: skip
 
@@ -132,12 +134,14 @@ def energy(ran: Sequence[FinishedRun], labels: Sequence[str], add: Add) -> Secti
         for name in ("potential", "kinetic")
     ]  # fmt: skip
     rubs = any(one.values.get("friction") for one in ran)
-    columns = ("potential", "kinetic", "on the grid", "elastic", "plastic", "damping", "walls",
+    pools = any(one.run.pooling for one in ran)
+    columns = ("potential", "kinetic", "on the grid", "elastic", "plastic", *["pooling"] * pools, "damping", "walls",
                *["slip on walls"] * rubs, "transfer", "convection", "residual")  # fmt: skip
     rows = []
     for one, label in zip(ran, labels, strict=True):
         start, v = float(one.curves["potential"][0]), one.values
-        parts = [v[name] / start for name in ("potential", "kinetic", "on_grid", "elastic", "plastic", "damping")]
+        parts = [v[name] / start for name in ("potential", "kinetic", "on_grid", "elastic", "plastic")]
+        parts += [*[v.get("pooled", 0.0) / start] * pools, v["damping"] / start]
         parts += [-v["walls"] / start, *[v["friction"] / start] * rubs]
         parts += [v["transfer"] / start, v["convection"] / start]
         rows.append((label, *(f"{100 * part:.2f}" for part in parts), f"{v['unbalanced']:.1e}"))
@@ -148,6 +152,7 @@ def energy(ran: Sequence[FinishedRun], labels: Sequence[str], add: Add) -> Secti
         "particles. Each term is computed apart from the others; the residual is what their sum misses. Where the "
         "gradients of weights jump, as those of classical MPM do, convection is not small."
     )
+    text += " Pooling is elastic energy that it has taken from the particles of cells." * pools
     text += " Slip on walls is the part of walls that friction takes, by velocities at the end of each step." * rubs
     return Section("energy", "Energy", [text], figures, [
         Table("Energies at the end, % of the initial potential energy; residual: largest at any time",

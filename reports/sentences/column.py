@@ -18,6 +18,12 @@ AFTER = {
     "cells": "cells wide", "ppc": "per cell", "damping_kind": "damping", "deformation": "F", "smoothing": "smoothing",
 }  # fmt: skip
 QUANTITIES = {"front_99": "front, 99 %", "front_999": "front, 99.9 %", "toe": "toe", "height": "height at the wall"}
+BOOKS = (
+    "The logarithm of det F is plastic dilation, void strain and elastic strain, which is small; pooling moves void "
+    "and compression between the particles of a cell, and keeps their sum. Crowding is the volume that particles keep "
+    "over the space that they are in: with few particles nothing on the grid ties the two. Mean det F over crowding is "
+    "the area of the heap, that of the column 1."
+)
 ANSWERS = {True: "reproduced", False: "not reproduced", None: "cannot be told"}
 
 

@@ -20,7 +20,7 @@ With phi = 0 it is von Mises' material: sqrt(J2) <= c (plane_strain: t <= c wher
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import radians, sin, sqrt
-from typing import ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 
@@ -32,6 +32,9 @@ from mpm_verify.solver.principal import in_order, in_plane
 from mpm_verify.solver.rate_material import RateMaterial
 from mpm_verify.solver.state import Floats
 from mpm_verify.solver.voids import check_void, close_void
+
+if TYPE_CHECKING:
+    from mpm_verify.solver.compression import Compression
 
 
 @kernel(RESPOND)
@@ -155,6 +158,12 @@ class DruckerPrager(RateMaterial, Elastic):
     def cohesion(self) -> float:
         """Cohesion c, in the unit of E."""
         return self.c
+
+    def compression(self) -> "Compression":
+        """Volume strain that stress holds."""
+        from mpm_verify.solver.compression import linear
+
+        return linear(self)
 
     def constants(self) -> Floats:
         """Constants (9,): lam, 2 mu, a, b, and factors of the return."""

@@ -17,7 +17,7 @@ cut-off is at sigma_t itself, however high.
 
 from dataclasses import dataclass
 from math import cos, inf, radians, sin, sqrt, tan
-from typing import Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 
@@ -28,6 +28,9 @@ from mpm_verify.solver.principal import advance_elastic, in_order, on_axes, unso
 from mpm_verify.solver.rate_material import RateMaterial
 from mpm_verify.solver.state import Floats
 from mpm_verify.solver.voids import check_void, close_void
+
+if TYPE_CHECKING:
+    from mpm_verify.solver.compression import Compression
 
 
 @kernel(inline=True)
@@ -169,6 +172,12 @@ class MohrCoulomb(RateMaterial, Elastic):
     def cohesion(self) -> float:
         """Cohesion c, in the unit of E."""
         return self.c
+
+    def compression(self) -> "Compression":
+        """Volume strain that stress holds."""
+        from mpm_verify.solver.compression import linear
+
+        return linear(self)
 
     def constants(self) -> Floats:
         """Constants (19,): lam, 2 mu, strength, and the weights of trial stresses in the return to each region."""

@@ -22,7 +22,7 @@ to cyclic loading, and the paper's column has none.
 
 from dataclasses import dataclass, fields
 from math import inf, isfinite, radians, sin, sqrt, tan
-from typing import ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,8 +31,11 @@ from mpm_verify.solver._jit import kernel
 from mpm_verify.solver.mobilised import onset, slip, unit
 from mpm_verify.solver.objective import RESPOND
 from mpm_verify.solver.rate_material import RateMaterial
-from mpm_verify.solver.state import Floats
+from mpm_verify.solver.state import Floats, Ints, Particles
 from mpm_verify.solver.voids import check_void, close_void
+
+if TYPE_CHECKING:
+    from mpm_verify.solver.compression import Compression
 
 PASSES = 3
 CLOSE = 0.8  # cosine between the axes of the middle and of the end; beyond it the return is radial
@@ -258,6 +261,19 @@ class Ubcsand(RateMaterial):
         """Shear modulus G and bulk modulus K at the mean stress s in the plane, compression positive."""
         ratio = max(s / self.Pa, self.s_min)
         return self.KGe * self.Pa * ratio**self.ne, self.KBe * self.Pa * ratio**self.me
+
+    def compression(self) -> "Compression":
+        """Volume strain that stress holds. Raises ValueError unless both moduli follow the same power of s."""
+        from mpm_verify.solver.compression import by_power
+
+        if self.ne != self.me:
+            raise ValueError(f"pooling must have ne = me, one power of s, not ne = {self.ne} and me = {self.me}")
+        stiff = (self.KBe + self.KGe / 3) * self.Pa ** (1 - self.me)
+        return by_power(stiff, self.me, self.s_min * self.Pa)
+
+    def renew(self, particles: Particles, rows: Ints) -> None:
+        """Write eta_m of particles in `rows` as their new stress mobilises it: what touches again loads as if new."""
+        particles.history[rows, 0] = self.initial(particles.sigma[rows])[:, 0]
 
     def constants(self) -> Floats:
         """Constants (16,) in the order in which the kernel reads them."""

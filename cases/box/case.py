@@ -1,0 +1,100 @@
+"""Box of sand: a column that falls into a smooth box, and rests there with no voids, under its weight.
+
+Sand without dilation and cohesion, 7 cells wide and 21 high, its particles shifted at random, falls from 8 cm onto the
+floor of a box whose sides nothing sticks to, with a little damping. Its end is known:
+
+    no particle is without stress, as sand at rest has no voids
+    sigma_yy is the weight above, as the sides carry none
+    sigma_xx = K sigma_yy with K from nu/(1 - nu), sides that do not give way, to about 0.5
+    the sand has the area that it had
+
+Sums over the rows of the grid are those of the forces, and right whatever the particles carry; single particles are
+not. What is below the scale of the grid is what this case is for.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import nan
+from typing import Any
+
+from mpm_verify.cases.box.run import QUICK, ROWS, Result, Run
+from mpm_verify.cases.harness.checks import Check, Way
+from mpm_verify.cases.harness.store import Store
+from mpm_verify.cases.harness.study import Study
+from mpm_verify.solver.plugins import MATERIALS, METHODS, SMOOTHINGS, TRANSFERS, create, label
+from mpm_verify.solver.plugins import canonical as canonical_name
+
+__all__ = ["QUICK", "Result", "Run"]
+
+FREE, WEIGHT, TOP, LARGEST, MOVING = 0.05, 0.05, 0.03, 8.0, 1e-4
+K, AROUND = 0.475, 0.075  # 0.40 to 0.55
+
+
+@dataclass(frozen=True)
+class BoxAnalysis:
+    """Numbers of all boxes, each beside what it is held against."""
+
+    checks: tuple[Check, ...]
+
+
+def title(runs: Sequence[Run]) -> str:
+    """Title of a study of boxes."""
+    return "Sand in a box, at rest" + ", failing control" * all(run.control for run in runs)
+
+
+def canonical(values: dict[str, Any]) -> dict[str, Any]:
+    """Specifications with only the parameters that differ from their defaults."""
+    for key, package in {"method": METHODS, "material": MATERIALS, "transfer": TRANSFERS}.items():
+        values[key] = canonical_name(package, values.get(key, getattr(Run, key)))
+    smoothing = values.get("smoothing", Run.smoothing)
+    values["smoothing"] = smoothing if smoothing == "none" else canonical_name(SMOOTHINGS, smoothing)
+    return values
+
+
+def check(runs: Sequence[Run]) -> None:
+    """Raise ValueError for what no box can have, by setting up a small one of each kind."""
+    from mpm_verify.cases.box.execute import setup  # what computes takes a second to import
+
+    for run in runs:
+        if create(METHODS, run.method).reference:
+            raise ValueError(
+                f"{label(run.method)} keeps its nodes in the reference configuration, where no grain meets another; "
+                "choose --method cpdi"
+            )
+    small = (replace(run, cells=2, ppc=4, aspect=2.0, duration=1e-2, seed=1) for run in runs)
+    for kind in dict.fromkeys(small):
+        setup(kind)
+
+
+def examine(study: Study[Run], results: Mapping[str, Result], store: Store) -> BoxAnalysis:
+    """Hold the numbers of each run against the known end."""
+    done = (results[run.digest] for run in study.runs if run.digest in results)
+    return BoxAnalysis(tuple(one for result in done for one in checks(study, result)))
+
+
+def checks(study: Study[Run], result: Result) -> list[Check]:
+    """Checks of one run."""
+    group, v = named(study, result.run), result.values
+
+    def held(name: str, key: str, expected: float, way: Way, source: str, within: float = 0.0) -> Check:
+        return Check(group, name, v.get(key, nan), expected, way, source, within, result.failure)
+
+    return [
+        held("kinetic energy of the grid over m g H", "moving", MOVING, "at_most", "rest"),
+        held("fraction of particles without stress", "free", FREE, "at_most", "no voids"),
+        *(held(f"V sigma_yy over the weight above, row {k}", f"weight_{k}", 1.0, "absolute", "equilibrium", WEIGHT)
+          for k in range(1, ROWS + 1)),
+        held("sigma_xx over sigma_yy below two thirds", "K_low", K, "absolute", "smooth sides at rest", AROUND),
+        held("top over the height of the column", "top", 1.0, "absolute", "area kept", TOP),
+        held("largest sigma_yy over its mean in the lowest row", "largest", LARGEST, "at_most", "no particle alone"),
+    ]  # fmt: skip
+
+
+def named(study: Study[Run], run: Run) -> str:
+    """Group of the checks of a run: what the study varies, or what it is."""
+    return ", ".join(told(axis, getattr(run, axis)) for axis in study.axes) or str(run)
+
+
+def told(axis: str, value: Any) -> str:
+    """Value of an axis as it is typed, such as `ppc 4` or `control yes`."""
+    return f"{axis} {('no', 'yes')[value] if isinstance(value, bool) else value}"
