@@ -15,7 +15,7 @@ from mpm_verify.cases.judging.contamination import Nearest, nearest, relative, t
 from mpm_verify.cases.judging.fit import Array, Fit
 from mpm_verify.cases.judging.scatter import EXACT, limit
 
-SURE = 0.99  # one-sided
+SURE, SQUARED = 0.99, 0.998  # one-sided; more for squares, which are looked at beside sums
 BESIDE = 0.95  # where the interval of the slope has to be below the band too
 REACHED = 0.2  # below the expected order: what the finest pair of sound errors may be, whatever the band
 STARTS = 5  # values of a: sums of two would fall on coarse levels, as a leak does
@@ -56,7 +56,7 @@ class Refutation:
     def told(self) -> Nearest:
         """The better of the two fits: a sum, unless a sum of squares leaves less by more than chance."""
         plain, square = self.mixed
-        chance = self.chance(square.left, square.dof, SURE) if square.dof else plain.left
+        chance = self.chance(square.left, square.dof, SQUARED) if square.dof else plain.left
         return square if plain.left > np.hypot(square.left, chance) + EXACT else plain
 
     @cached_property
@@ -94,7 +94,8 @@ class Refutation:
 
     def contaminated(self, allowed: float) -> bool:
         """Whether more than `allowed` of the finest error is of another order."""
-        return any(self.shown(one.left, one.dof, allowed, SURE) for one in self.mixed)
+        sure = {1: SURE, 2: SQUARED}
+        return any(self.shown(one.left, one.dof, allowed, sure[one.power]) for one in self.mixed)
 
     def least(self, allowed: float) -> float:
         """Smallest fraction of the finest error that is of another order, as far as scatter goes, above `allowed`."""
