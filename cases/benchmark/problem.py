@@ -25,6 +25,10 @@ from mpm_verify.solver.state import Floats
 Pair = tuple[str, str]  # quantity and norm
 Errors = dict[str, dict[str, float]]
 CONSTANTS = ("E", "nu", "rho0")  # parameters of a problem that are its material's too
+UNITS = {
+    "E": "Pa", "rho0": "kg/m3", "g": "m/s2", "H": "m", "B": "m", "R": "m", "T": "s", "q": "Pa", "speed": "m/s",
+    "theta": "degrees", "x": "m", "y": "m", "syy": "Pa",
+}  # fmt: skip
 AT_REST = "at_rest"  # value of a run: 1, or 0 of one that ended before
 FIGURE, EXACT = "curves/", "exact"  # array curves/FIGURE/CURVE (2,n), x and y; EXACT is the known answer
 
@@ -92,6 +96,8 @@ class Held:
         Why the number is shown and not judged, such as parameters that its band was not measured at; usual is nothing.
     rests
         Whether it is that of a body at rest, so that nothing is judged of a run whose value AT_REST is 0.
+    unit
+        Unit of the number and of what it is held against; empty of a ratio or a count.
     """
 
     name: str
@@ -103,6 +109,7 @@ class Held:
     least: int = 0
     unjudged: Unjudged = ""
     rests: bool = False
+    unit: str = ""
 
 
 @dataclass(frozen=True)
@@ -133,6 +140,8 @@ class Problem:
         Figures by the names that Measured.curves has.
     tied
         Whether there is no time step that could be halved.
+    units
+        Units of its parameters, and of known columns of the end, by name; of a ratio or a count none.
     """
 
     source: ClassVar[str] = ""
@@ -144,6 +153,7 @@ class Problem:
     smoothings: ClassVar[tuple[str, ...]] = ("none",)
     figures: ClassVar[Mapping[str, Drawn]] = {}
     tied: ClassVar[bool] = False
+    units: ClassVar[Mapping[str, str]] = UNITS
 
     @property
     def constants(self) -> dict[str, float]:
