@@ -8,7 +8,7 @@ import json
 import os
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from importlib import import_module
 from math import log
 from types import SimpleNamespace
@@ -56,14 +56,49 @@ def test_a_changed_result_changes_the_page(scripts: tuple[Any, Any], monkeypatch
             assert page.page() != page.PAGE.read_text(encoding="utf-8"), name
 
 
+def changed(page: Any, monkeypatch: pytest.MonkeyPatch, name: str, change: Callable[[dict[str, Any]], None]) -> None:
+    """Let a stored result be read with a change."""
+    usual, found = page.stored, page.stored(name)
+    change(found)
+    monkeypatch.setattr(page, "stored", lambda one: found if one == name else usual(one))
+
+
 def test_what_refutes_another_quantity_is_told(scripts: tuple[Any, Any], monkeypatch: pytest.MonkeyPatch) -> None:
     _, page = scripts
-    assert page.refuted() == "- none"
-    found = {**page.stored("mpm99"), "refuted": {"F": "the order is 0: run with more"}}
-    usual = page.stored
-    monkeypatch.setattr(page, "stored", lambda one: found if one == "mpm99" else usual(one))
-    assert page.refuted() == "- 12, F: the order is 0"
+    assert page.reasons("FAIL", "v", "F", "sigma") == "- none"
+
+    def stay(found: dict[str, Any]) -> None:
+        for row in found["runs"]:
+            row["F"] = 1e-6
+
+    changed(page, monkeypatch, "mpm99", stay)
+    assert page.reasons("FAIL", "v", "F", "sigma").startswith("- 12, F: ")
     assert "| PASS, F FAIL |" in page.page()
+
+
+def test_verdicts_are_those_of_the_rule_on_the_stored_errors(
+    scripts: tuple[Any, Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """None is stored, and each follows from what is: errors, the floor, and half the time step."""
+    study, page = scripts
+    assert not any({"verdict", "refuted"} & page.stored(name).keys() for name in study.studies())
+    one = study.studies()["kratos_usl"]
+
+    def said(change: Callable[[dict[str, Any]], None]) -> str:
+        found = page.stored("kratos_usl")
+        change(found)
+        outcome, reason = page.verdicts(one, found)["u"]
+        return f"{outcome}: {reason}"
+
+    def first_order(found: dict[str, Any]) -> None:
+        for row in found["runs"]:
+            row["u"] = 1e-6 / row["cells"]
+
+    assert said(lambda found: None).startswith("PASS: order 2.02 (97.5 % interval 2.01 to 2.04, last pair 2.02)")
+    assert said(first_order).startswith("FAIL: ")
+    assert said(lambda found: found["half"].update(u=0.6 * found["half"]["u"])).startswith("INCONCLUSIVE: coupled")
+    assert "round-off floor" in said(lambda found: found["runs"][-1]["floor"].update(u=1e-9))
+    assert "small enough" in said(lambda found: found.update(half=None))
 
 
 def test_orders_and_digits_of_the_page(scripts: tuple[Any, Any]) -> None:
@@ -82,6 +117,9 @@ def test_stored_results_are_those_of_the_studies(scripts: tuple[Any, Any]) -> No
         found = page.stored(name)
         assert [row["cells"] for row in found["runs"]] == one["cells"], name
         assert len(found.get("reference", [])) == (len(one["cells"]) if "reference" in one else 0)
+        assert all(row.keys() - {"cells", "floor"} == row["floor"].keys() for row in found["runs"]), name
+        if found["half"]:  # of the finest cells; none where the path of the time step is given, or none is needed
+            assert found["half"]["cells"] == one["cells"][-1], name
         assert (ADAPTERS / one["code"] / one.get("script", "adapter.py")).is_file()
     assert {path.stem for path in study.RESULTS.glob("*.json")} == {
         *study.studies(), *study.COMPARED, "kratos_smallest", "newton_smallest", "sparkl_smallest",

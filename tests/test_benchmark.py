@@ -28,6 +28,8 @@ from mpm_verify.cases.harness.contract import case_named
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.cases.judging.records import Reason, ReasonCode
 from mpm_verify.cases.judging.richardson import extrapolate
+from mpm_verify.reports.export.benchmark_folder import schema as benchmark_schema
+from mpm_verify.reports.export.benchmark_folder import words as folder_words
 from mpm_verify.reports.export.case_folder import read
 from mpm_verify.reports.export.document import schema
 from mpm_verify.reports.frames import Record
@@ -376,6 +378,30 @@ def test_a_problem_of_ones_own_is_a_file(tmp_path: Path) -> None:
     assert run.digest != Run(**canonical({"problem": "self_weight:H=5", "cells": 4})).digest
 
 
+PURE = {
+    "parameters": ("nu", "damping", "mu", "rough", "settlement", "transits", "stretch"),
+    "material": ("name", "sigma", "nu", "void"),
+}
+
+
+def test_an_exported_benchmark_says_what_is_not_judged_here() -> None:
+    """With the code of its reason, as the checks here have it, and in words."""
+    usual = exported("rankine", None, 16, None, 0.4)
+    steep = exported("rankine", "mohr_coulomb:phi=50", 16, None, 0.4)
+    for made, why in ((usual, ""), (steep, "not_usual")):
+        assert {one.name: one.unjudged for one in made.record.known if one.name in ("Kp", "Ka")} == {
+            "Kp": why,
+            "Ka": why,
+        }
+    said = folder_words(steep, create(PROBLEMS, "rankine"))
+    assert said.count("; not judged: how near it comes was measured at the usual parameters |") == 2
+    assert "; not judged:" not in folder_words(usual, create(PROBLEMS, "rankine"))
+    column = exported("self_weight", None, 16, None, 0.4)
+    assert {one.name: (one.unit, one.rests) for one in column.record.known} == {
+        "height": ("m", True), "base_stretch": ("", True), "base_force": ("", True), "cell_stress": ("Pa", True)
+    }  # fmt: skip
+
+
 @pytest.mark.parametrize("problem", available(PROBLEMS))
 def test_every_problem_is_exported(
     problem: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
@@ -396,11 +422,21 @@ def test_every_problem_is_exported(
     told = [{key: asdict(held)[key] for key in case["known"][0]} for held in stated.stated.held(stated)]
     assert set(case["known"][0]) >= {"name", "expected", "way", "within", "of", "least", "source"}
     assert case["known"] == told  # each of them, two bounds of one number too
+    jsonschema.validate(case, benchmark_schema())
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate({**case, "known": [{**told[0], "unjudged": "nobody_knows"}]}, benchmark_schema())
     readme = (tmp_path / "README.md").read_text()
+    assert f"cells of side {case['dx']} m from" in readme
     assert sum(f"| {one['name']} |" in line for line in readme.splitlines() for one in told) >= len(told)
     assert {edge["kind"] for edge in case["edges"].values()} <= {"free", "roller", "fixed", "frictional", "pushed"}
     flat = dict(line.split(" ", 1) for line in (tmp_path / "case.txt").read_text().splitlines())
     assert float(flat["dx"]) == case["dx"]
+    assert [flat[f"known_{k}_name"] for k in range(1, len(told) + 1)] == [one["name"] for one in told]
+    assert flat["units_dx"] == "m"
+    pure = {name for name, _ in flat.items() if name.startswith(("parameters_", "material_"))} - {
+        name.removeprefix("units_") for name in flat
+    }  # ratios, exponents, flags and words
+    assert pure <= {f"{part}_{name}" for part, names in PURE.items() for name in names}
     with pytest.raises(ValueError, match="holds a benchmark, which has no body-force sources to check"):
         read(tmp_path)
 

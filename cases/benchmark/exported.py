@@ -1,24 +1,39 @@
 """Content of a benchmark as another solver reads it: the case, particles at the start, and what is known of its end."""
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, fields
 from typing import Any, Final
 
 import numpy as np
 
 from mpm_verify.cases.benchmark.edges import EdgeRecord, PushedRecord, edges, pushed_nodes
 from mpm_verify.cases.benchmark.run import Run
+from mpm_verify.cases.harness.checks import Unjudged
 from mpm_verify.mms.export.case import Columns, constants, named, numbers, positions
 from mpm_verify.mms.export.record import MaterialRecord
 from mpm_verify.solver.plugins import label, parameters_of
 
 FORMAT: Final = "mpm-verify-benchmark-1"
 EXPORTED = "cpdi"  # method whose domains are told: half side vectors at reference
+EVERY = {  # units of what every benchmark has
+    "grid_lower": "m", "grid_upper": "m", "dx": "m", "gravity": "m/s2", "dt": "s", "duration": "s", "traction": "Pa",
+    "pushed_lower": "m", "pushed_upper": "m", "pushed_distance": "m", "pushed_duration": "s", "X": "m", "x": "m",
+    "v": "m/s", "s": "Pa", "V0": "m2", "m": "kg/m", "r": "m",
+}  # fmt: skip
+SOLID = {  # and of constants of materials
+    **dict.fromkeys(("E", "lam", "mu", "kappa", "c", "sigma_t", "Pa", "s_min", "s_bound"), "Pa"), "rho0": "kg/m3",
+    **dict.fromkeys(("phi", "psi", "phi_f", "phi_pt"), "degrees"),
+}  # fmt: skip
 LATE = 1e300  # a time at which the body force has its final value
 
 
 @dataclass(frozen=True)
 class KnownRecord:
-    """Number of a run and what it is held against, see cases/benchmark/problem.py: Held."""
+    """Number of a run and what it is held against, see cases/benchmark/problem.py: Held.
+
+    `unjudged` is the code of why the number is shown here and not judged, empty where it is; what `rests` is judged of
+    a body at rest alone.
+    """
 
     name: str
     expected: float
@@ -27,11 +42,14 @@ class KnownRecord:
     of: str
     least: int
     source: str
+    unit: str
+    unjudged: Unjudged
+    rests: bool
 
 
 @dataclass(frozen=True)
 class BenchmarkRecord:
-    """Benchmark as another solver reads it; plane strain, any consistent set of units.
+    """Benchmark as another solver reads it; plane strain, per unit of thickness. Units are SI; any consistent set does.
 
     Parameters
     ----------
@@ -55,6 +73,8 @@ class BenchmarkRecord:
         Of the problem and of the constitutive model.
     known
         Numbers, and what each is held against; of one number there may be two bounds.
+    units
+        Unit of each number by its name in case.txt, without its component, and of columns; of those without one none.
     """
 
     format: str
@@ -76,6 +96,7 @@ class BenchmarkRecord:
     parameters: dict[str, float]
     material: MaterialRecord
     known: tuple[KnownRecord, ...]
+    units: dict[str, str]
 
 
 @dataclass(frozen=True)
@@ -118,7 +139,7 @@ def export(run: Run) -> Exported:
     for side in range(2):
         particles |= named(f"r{side + 1}", columns["domain"][:, 2 * side : 2 * side + 2])
     known = tuple(
-        KnownRecord(held.name, held.expected, held.way, held.within, held.of, held.least, held.source)
+        KnownRecord(**{item.name: getattr(held, item.name) for item in fields(KnownRecord)})
         for held in problem.held(run)
     )
     values = {key: getattr(problem, item.name) for key, item in parameters_of(problem).items()}
@@ -127,8 +148,16 @@ def export(run: Run) -> Exported:
         run.ppc, len(p), edges(model), pushed_nodes(model), numbers(np.median(columns["b"], axis=0)),
         model.damping.alpha if model.damping else 0.0, model.dt, setup.steps, setup.steps * model.dt, values,
         MaterialRecord(label(run.material), constants(model.material), getattr(model.material, "formula", "")), known,
+        units(problem, values, constants(model.material)),
     )  # fmt: skip
     return Exported(record, particles, problem.answers(run, columns["X"]))
+
+
+def units(problem: Any, values: Iterable[str], solid: Iterable[str]) -> dict[str, str]:
+    """Units of a record by the names of case.txt: those of every benchmark, of parameters, and of the material."""
+    found = dict(EVERY)
+    found |= {f"parameters_{name}": unit for name in values if (unit := problem.units.get(name))}
+    return found | {f"material_{name}": unit for name in solid if (unit := SOLID.get(name))}
 
 
 def exported(problem: str, material: str | None, cells: int, ppc: int | None, courant: float) -> Exported:

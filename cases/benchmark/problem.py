@@ -25,6 +25,10 @@ from mpm_verify.solver.state import Floats
 Pair = tuple[str, str]  # quantity and norm
 Errors = dict[str, dict[str, float]]
 CONSTANTS = ("E", "nu", "rho0")  # parameters of a problem that are its material's too
+UNITS = {
+    "E": "Pa", "rho0": "kg/m3", "g": "m/s2", "H": "m", "B": "m", "R": "m", "T": "s", "q": "Pa", "speed": "m/s",
+    "theta": "degrees", "x": "m", "y": "m", "syy": "Pa",
+}  # fmt: skip
 AT_REST = "at_rest"  # value of a run: 1, or 0 of one that ended before
 FIGURE, EXACT = "curves/", "exact"  # array curves/FIGURE/CURVE (2,n), x and y; EXACT is the known answer
 
@@ -94,6 +98,8 @@ class Held:
         What the Richardson limit is held within too, beside ``each``, where there are three levels; 0: it is not.
     rests
         Whether it is that of a body at rest, so that nothing is judged of a run whose value AT_REST is 0.
+    unit
+        Unit of the number and of what it is held against; empty of a ratio or a count.
     """
 
     name: str
@@ -106,6 +112,7 @@ class Held:
     unjudged: Unjudged = ""
     rests: bool = False
     limit: float = 0.0
+    unit: str = ""
 
 
 @dataclass(frozen=True)
@@ -136,6 +143,8 @@ class Problem:
         Figures by the names that Measured.curves has.
     tied
         Whether there is no time step that could be halved.
+    units
+        Units of its parameters, and of known columns of the end, by name; of a ratio or a count none.
     """
 
     source: ClassVar[str] = ""
@@ -147,6 +156,7 @@ class Problem:
     smoothings: ClassVar[tuple[str, ...]] = ("none",)
     figures: ClassVar[Mapping[str, Drawn]] = {}
     tied: ClassVar[bool] = False
+    units: ClassVar[Mapping[str, str]] = UNITS
 
     @property
     def constants(self) -> dict[str, float]:

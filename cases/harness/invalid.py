@@ -30,7 +30,7 @@ def invalid(error: ValidationError) -> str:
 
 
 def wrong(first: Mapping[str, Any]) -> str:
-    """What is wrong with a value, an entry of `ValidationError.errors`: ` must be a number`, or a sentence of ours."""
+    """Fault of a value, an entry of `ValidationError.errors`: ` must be a number`, or a sentence of ours."""
     kind, message = first["type"], first["msg"].removeprefix("Value error, ")
     if kind in KINDS:
         return f" must be {KINDS[kind]}"

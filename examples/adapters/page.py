@@ -1,4 +1,7 @@
-"""Page docs/public-codes.md, made of what is stored: python examples/adapters/page.py writes it."""
+"""Page docs/public-codes.md, made of what is stored: python examples/adapters/page.py writes it.
+
+Verdicts are those of the rule as it is now, on the stored errors.
+"""
 
 import json
 import shlex
@@ -6,6 +9,7 @@ from itertools import pairwise
 from math import log, log10
 
 from study import HERE, RESULTS, TOP, command, comparison, studies
+from verdicts import verdicts
 
 PAGE = TOP / "docs" / "public-codes.md"
 KEPT = 7  # significant digits of a stored error
@@ -40,7 +44,9 @@ def digits(found):
 def row(number, study, found):
     """Row of the table of a study."""
     levels = ", ".join(f"{one['cells']}: {short(one['u'])}" for one in found["runs"])
-    verdict = ", ".join([found["verdict"]["verdict"], *(f"{name} FAIL" for name in found["refuted"])])
+    judged = verdicts(study, found)
+    failed = [f"{name} FAIL" for name, (outcome, _) in judged.items() if name != "u" and outcome == "FAIL"]
+    verdict = ", ".join([judged["u"][0], *failed])
     cells = [str(number), found["version"], study["method"], f"`{study['solution']}`", levels, orders(found["runs"]),
              verdict, digits(found), study["found"]]  # fmt: skip
     return "| " + " | ".join(cells) + " |"
@@ -54,17 +60,11 @@ def table():
     return "\n".join([*lines, *rows])
 
 
-def reasons(outcome):
-    """Why u of a row has an outcome, a line each, without what to run next."""
-    verdicts = [(k, stored(name)["verdict"]) for k, name in enumerate(studies(), 1)]
-    return listed([(k, "u", one["reason"]) for k, one in verdicts if one["verdict"] == outcome])
-
-
-def refuted():
-    """Why v, F and sigma of a row are FAIL, a line each."""
-    return listed(
-        [(k, name, reason) for k, study in enumerate(studies(), 1) for name, reason in stored(study)["refuted"].items()]
-    )
+def reasons(outcome, *names):
+    """Why quantities of a row have an outcome, a line each, without what to run next."""
+    judged = [(k, verdicts(study, stored(one))) for k, (one, study) in enumerate(studies().items(), 1)]
+    return listed([(k, name, found[name][1]) for k, found in judged for name in names
+                   if name in found and found[name][0] == outcome])  # fmt: skip
 
 
 def listed(rows):
@@ -170,8 +170,9 @@ def page():
     template = (HERE / "page.md.in").read_text(encoding="utf-8")
     same = {**stored("kratos_usl_large"), "reference": [one["u"] for one in stored("tiny_symmetric")["runs"]]}
     parts = {
-        "SAME": digits(same), "TABLE": table(), "OPEN": reasons("INCONCLUSIVE"), "FAILED": reasons("FAIL"),
-        "REFUTED": refuted(), "STILL": still(), "NEAR_A_WALL": near_a_wall(), "STRETCHED": stretches(),
+        "SAME": digits(same), "TABLE": table(), "OPEN": reasons("INCONCLUSIVE", "u"),
+        "FAILED": reasons("FAIL", "u"), "REFUTED": reasons("FAIL", "v", "F", "sigma"),
+        "STILL": still(), "NEAR_A_WALL": near_a_wall(), "STRETCHED": stretches(),
         "TWO_OF_A_KIND": digits({**stored("sparkl"), "reference": [one["u"] for one in stored("mpm99")["runs"]]}),
         "TURNED": turned(), "FACED": faced(), "COMPARISON": shlex.join(comparison("kratos_compared")),
         "COMPARED": "\n".join(f"- {line}" for line in stored("kratos_compared")["sentences"]),

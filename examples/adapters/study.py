@@ -1,8 +1,8 @@
 """Studies of public codes: python examples/adapters/study.py [NAME ...] runs those of studies.toml, or some of them.
 
 The adapters run with the interpreter that the environment variable ADAPTERS_PYTHON names, else with this one. What is
-kept of a study is small: its errors over 16 frames, the verdict on u, what refutes v, F and sigma, and the errors of
-the solver here in the same frames.
+kept of a study is small: its errors over 16 frames with their round-off floors, also with half the time step on the
+finest cells, and the errors of the solver here in the same frames. Verdicts are made of them, see verdicts.py.
 """
 
 import json
@@ -65,10 +65,9 @@ def command(study, python="python"):
 
 
 def answered(words, out):
-    """Document and stored results of a command, in a folder."""
-    document = told([*words, "--jobs", "1", "--out", str(out)])
-    stored = [json.loads(file.read_text(encoding="utf-8")) for file in sorted((out / "runs").glob("*.json"))]
-    return document, stored
+    """Stored results of a command, in a folder."""
+    told([*words, "--jobs", "1", "--out", str(out)])
+    return [json.loads(file.read_text(encoding="utf-8")) for file in sorted((out / "runs").glob("*.json"))]
 
 
 def told(words):
@@ -91,18 +90,23 @@ def compared(name, python):
 def run(study, python):
     """Result of a study, as it is kept."""
     words = command(study, python)
-    usual = float(words[words.index("--courant") + 1]) if "--courant" in words else COURANT
+    usual = float(dict(zip(words[2::2], words[3::2], strict=True)).get("--courant", COURANT))
     with tempfile.TemporaryDirectory() as folder:
-        document, stored = answered(words, Path(folder))
+        stored = answered(words, Path(folder))
     (version,) = {one["told"] for one in stored if one.get("told")}
-    rows = [{"cells": row["cells"], **{name: kept(norms["rms"]) for name, norms in (row["errors"] or {}).items()}}
-            for row in document["runs"] if row["courant"] == usual]  # fmt: skip
-    verdicts = {one["quantity"]: {key: one[key] for key in ("verdict", "reason")} for one in document["verdicts"]}
-    refuted = {name: one["reason"] for name, one in verdicts.items() if name != "u" and one["verdict"] == "FAIL"}
-    found = {"version": version, "runs": rows, "verdict": verdicts["u"], "refuted": refuted}
+    levels = sorted((one for one in stored if one["errors"]), key=lambda one: one["run"]["cells"])
+    rows = [row(one) for one in levels if one["run"]["courant"] == usual]
+    half = next((row(one) for one in levels if one["run"]["courant"] != usual), None)
+    found = {"version": version, "runs": rows, "half": half}
     if "reference" in study:
         found["reference"] = [reference(study, row["cells"]) for row in rows]
     return found
+
+
+def row(one):
+    """Level of a stored result: cells, errors in rms, and their round-off floors."""
+    errors = {name: kept(norms["rms"]) for name, norms in one["errors"].items()}
+    return {"cells": one["run"]["cells"], **errors, "floor": {name: kept(one["floor"][name]) for name in errors}}
 
 
 def kept(error):

@@ -113,7 +113,7 @@ def flat(record: Any) -> list[tuple[str, str]]:
             for key, one in value.items():
                 add(f"{name}_{key}", one)
         elif isinstance(value, list | tuple):
-            counted = name == "frames"
+            counted = name == "frames" or (bool(value) and isinstance(value[0], dict))
             names = [str(k + 1) for k in range(len(value))] if counted else "xyz"
             found.extend([(name, str(len(value)))] * counted)
             for key, one in zip(names, value, strict=False):

@@ -3,14 +3,18 @@
 import json
 from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
-from mpm_verify.cases.benchmark.exported import FORMAT, Exported
+from pydantic import TypeAdapter
+
+from mpm_verify.cases.benchmark.exported import FORMAT, BenchmarkRecord, Exported
 from mpm_verify.cases.benchmark.problem import Problem
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.mms.export.files import CASE, FLAT, PARTICLES, csv
 from mpm_verify.mms.export.record import flat
 from mpm_verify.reports.export.folder import README, rendered, usable
 from mpm_verify.reports.sentences.benchmark import statement
+from mpm_verify.reports.sentences.unjudged import SAID
 
 KNOWN = "known.csv"
 WAYS = {"relative": "", "absolute": "", "at_most": "at most ", "at_least": "at least "}
@@ -63,5 +67,16 @@ def benchmark_in(folder: Path) -> None:
 
 def words(case: Exported, problem: Problem) -> str:
     """Text of README.md."""
-    columns, told = list(case.known), statement(problem)
-    return rendered("benchmark_folder.md.j2", case=case.record, statement=told, columns=columns, ways=WAYS, ofs=OFS)
+    columns = {name: problem.units.get(name, "") for name in case.known}
+    return rendered(
+        "benchmark_folder.md.j2", case=case.record, statement=statement(problem), columns=columns, ways=WAYS, ofs=OFS,
+        unjudged=SAID,
+    )  # fmt: skip
+
+
+def schema() -> dict[str, Any]:
+    """JSON schema (draft 2020-12) of case.json."""
+    found = TypeAdapter(BenchmarkRecord).json_schema(mode="serialization")
+    for definition in (found, *found["$defs"].values()):
+        definition["additionalProperties"] = False
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **found, "title": "mpm-verify benchmark folder"}

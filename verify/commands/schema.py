@@ -1,4 +1,4 @@
-"""`verify schema CASE`: JSON schema of what --json prints, of verify compare too, or of an exported case folder."""
+"""`verify schema CASE`: JSON schema of what --json prints, of verify compare too, or of an exported folder."""
 
 import json
 from typing import Annotated, Any
@@ -9,12 +9,12 @@ from mpm_verify.solver.plugins import CASES, available, meant
 from mpm_verify.verify.choices import completing
 from mpm_verify.verify.terminal.output import printing
 
-COMPARE, FOLDER = "compare", "case-folder"
+COMPARE, FOLDER, BENCHMARK = "compare", "case-folder", "benchmark-folder"
 
 
 def names() -> list[str]:
     """Names of what has a schema."""
-    return [*available(CASES), COMPARE, FOLDER]
+    return [*available(CASES), COMPARE, FOLDER, BENCHMARK]
 
 
 def schema(
@@ -23,7 +23,7 @@ def schema(
         typer.Argument(metavar="CASE", help=f"{', '.join(names())}.", autocompletion=completing(names)),
     ] = "mms",
 ) -> None:
-    """Print the JSON schema (draft 2020-12) of what --json prints for a case or compare; case-folder: of case.json."""
+    """Print the JSON schema (draft 2020-12) of what --json prints for a case or compare; of folders: of case.json."""
     from mpm_verify.verify.run import usage
 
     with usage():
@@ -38,6 +38,10 @@ def derived(case: str) -> dict[str, Any]:
         from mpm_verify.reports.export.case_folder import schema as of_folder
 
         return of_folder()
+    if case == BENCHMARK:
+        from mpm_verify.reports.export.benchmark_folder import schema as of_benchmark
+
+        return of_benchmark()
     if case == COMPARE:
         from mpm_verify.reports.export.digits import schema as of_comparison
 

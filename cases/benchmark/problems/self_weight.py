@@ -152,10 +152,10 @@ class SelfWeight(Problem):
         base, height = stretch(material, self.stress(material, 0.0)), float(self.rest(material, np.array([self.H]))[0])
         weight = material.rho0 * self.g * self.H
         return (
-            Held("height", height, "relative", "integral of the stretch", 1e-3, rests=True),
+            Held("height", height, "relative", "integral of the stretch", 1e-3, rests=True, unit="m"),
             Held("base_stretch", base, "relative", "stretch under the whole weight", 1e-2, rests=True),
             Held("base_force", 1.0, "absolute", "weight over the area", 1e-8, "each", rests=True),
-            Held("cell_stress", 1e-8 * weight, "at_most", "balance of each cell", of="each", rests=True),
+            Held("cell_stress", 1e-8 * weight, "at_most", "balance of each cell", of="each", rests=True, unit="Pa"),
         )
 
     def answers(self, run: Run, X: Floats) -> dict[str, Floats]:
