@@ -116,7 +116,7 @@ def part(run: Run) -> str:
 
 
 def unusual(run: Run) -> list[str]:
-    """Values of a run that are not usual of its problem: material, particles per cell, transfer, dt, positions."""
+    """Values of a run that are not as usual: material, particles per cell, transfer, time step, positions."""
     problem = run.stated
     material = completed(problem.material, problem.constants)
     return [

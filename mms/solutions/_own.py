@@ -27,23 +27,18 @@ import numpy as np
 
 from mpm_verify.mms.components import AXES
 from mpm_verify.mms.discretisation import axisymmetric, boundary_kinds, dimension
+from mpm_verify.mms.own_domain import HUGE, boundary, checked
 from mpm_verify.mms.square import per_radian
 from mpm_verify.solver.layout import CENTRED, Layout, Offset, rectangle
 from mpm_verify.solver.own_file import derived as file_derived
 from mpm_verify.solver.own_file import guarded, module_of, shortened
 from mpm_verify.solver.plugins import SOLUTIONS, own_class, parameters_of
-from mpm_verify.solver.sides import SOLID_SIDES
-from mpm_verify.solver.state import Floats
 
 if TYPE_CHECKING:
     import sympy as sp
 
 ARGUMENTS = {"displacement": ["X", "t"], "domain": []}
-NEEDED, OPTIONAL = {"lower", "upper", "duration", "speed"}, {"material", "boundary", "order", "axisymmetric"}
-KINDS = ("fixed", "roller", "free", "pulled", "prescribed")
 HELD = ("fixed", "roller")  # at a wall that does not move
-HUGE = 1e30  # a larger number of domain() overflows on the way
-NOT_NUMBERS = (str, bytes, bool, np.bool_, complex, np.complexfloating, np.ndarray)  # though float() takes some of them
 ROOM = 0.25  # fraction of the largest displacement by which an edge may move further than the exact one
 
 
@@ -92,71 +87,11 @@ class Own:
     @cached_property
     def domain(self) -> dict[str, Any]:
         """Dictionary that domain() returns, checked."""
-        domain = self.call("domain")
-        words = (
-            "it must return a dictionary with lower, upper, duration and speed, and perhaps material, boundary, order, "
-            "axisymmetric"
-        )
-        if not isinstance(domain, dict) or not NEEDED <= set(domain) <= NEEDED | OPTIONAL:
-            raise ValueError(f"{self.path}: domain returns {shortened(domain)}; {words}")
-        box = {name: self.corner(name, domain[name]) for name in ("lower", "upper")}
-        if len(box["upper"]) != len(box["lower"]):
-            raise ValueError(
-                f"{self.path}: domain has lower = {domain['lower']} and upper = {domain['upper']}; write as many "
-                "numbers for both"
-            )
-        if not (box["upper"] > box["lower"]).all():
-            raise ValueError(f"{self.path}: domain has upper = {domain['upper']}, not above lower = {domain['lower']}")
-        sizes = {n: self.number(n, domain[n]) for n in ("duration", "speed", "order") if n in domain}
-        for name, value in sizes.items():
-            if value <= 0:
-                raise ValueError(f"{self.path}: domain has {name} = {value:g}, which must be above zero")
-        material = domain.get("material", "neo_hookean")
-        if not isinstance(material, str) or not material:
-            raise ValueError(
-                f"{self.path}: domain has material = {shortened(material)}; write a name with its parameters, such as "
-                "'neo_hookean:E=1e4,nu=0.3'"
-            )
-        if not isinstance(domain.get("axisymmetric", False), bool | np.bool_):
-            raise ValueError(
-                f"{self.path}: domain has axisymmetric = {shortened(domain['axisymmetric'])}; write True or False"
-            )
-        return {**domain, **box, **sizes, "material": material}
+        return checked(self.path, self.call("domain"))
 
     def named(self) -> tuple[str, ...] | None:
         """Boundary that domain() names, one a side; None where it names none."""
-        named = self.domain.get("boundary")
-        if named is None:
-            return None
-        names = SOLID_SIDES[: 2 * len(self.lower)]
-        kinds = [kind for kind in KINDS if kind != "roller" or len(names) > 2]  # along the end of a line nothing slips
-        sides = tuple(named) if isinstance(named, tuple | list) else (named,) * len(names)
-        if len(sides) != len(names) or not all(isinstance(kind, str) and kind in kinds for kind in sides):
-            count = {2: "two", 4: "four", 6: "six"}[len(names)]
-            raise ValueError(
-                f"{self.path}: domain has boundary = {shortened(named)}; write one of {', '.join(kinds)}, or {count} "
-                f"of them for {', '.join(names)}"
-            )
-        return sides
-
-    def corner(self, name: str, value: Any) -> Floats:
-        """Corner (d,) of domain(); on a line it may be a number alone."""
-        several = isinstance(value, tuple | list) or (isinstance(value, np.ndarray) and value.ndim > 0)
-        if several and len(value) not in (1, 2, 3):
-            raise ValueError(
-                f"{self.path}: domain has {name} = {shortened(value)}; write two numbers, one on a line, three in a box"
-            )
-        return np.array([self.number(name, one) for one in (value if several else (value,))])
-
-    def number(self, name: str, value: Any) -> float:
-        """Finite number of domain(); a word that looks like one is not taken."""
-        try:
-            number = np.nan if isinstance(value, NOT_NUMBERS) else float(value)
-        except (TypeError, ValueError, OverflowError):
-            number = np.nan
-        if not abs(number) < HUGE:
-            raise ValueError(f"{self.path}: domain has {name} = {shortened(repr(value))}, which is not a finite number")
-        return number
+        return boundary(self.path, self.domain)
 
     lower = property(lambda self: self.domain["lower"])
     upper = property(lambda self: self.domain["upper"])
