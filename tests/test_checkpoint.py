@@ -29,6 +29,7 @@ RUNS = {
     "mohr_coulomb": SAND,
     "ubcsand": replace(SAND, material="ubcsand", start="oedometric", duration=0.003, transfer="apic"),
     "rough": replace(SAND, floor="frictional", left="frictional", damping=0.05, gate=1.0, mirror=True),
+    "pooled": replace(SAND, pooling=True),
     "smoothed": replace(SAND, smoothing="volumetric", transfer="fmpm", method="bspline2"),
 }
 SAME: dict[str, Any] = {"wall_s": 0.0, "cpu_s": 0.0, "peak_memory_mb": 0.0}

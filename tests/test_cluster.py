@@ -19,14 +19,15 @@ import pytest
 from fixtures_command import Call, caller, one_line
 
 import mpm_verify as mv
-from mpm_verify.cases.harness import cluster
+from mpm_verify.cases.harness import cluster, worker
 from mpm_verify.cases.harness.build import Asked, build
 from mpm_verify.cases.harness.checkpoint import Note, NoteCode
-from mpm_verify.cases.harness.cluster import Cluster, Through, connected, differs, facts
+from mpm_verify.cases.harness.cluster import Cluster, Through, connected
 from mpm_verify.cases.harness.runner import InProcess, RunnerError, Ticker, pending, run_study
 from mpm_verify.cases.harness.scheduler import scheduler
 from mpm_verify.cases.harness.store import Disk, Store, StoreError
 from mpm_verify.cases.harness.study import Study
+from mpm_verify.cases.harness.worker import differs, facts, teller
 from mpm_verify.reports.sentences import failures
 
 distributed = pytest.importorskip("distributed", reason="make installs it with requirements.lock")
@@ -110,7 +111,7 @@ def check_same(study: Study, store: Store, folder: Path) -> None:
 def away(monkeypatch: pytest.MonkeyPatch) -> Iterator[Cluster]:
     """Cluster of one worker in this process."""
     monkeypatch.setattr(Ticker, "PAUSE", 0.0)
-    monkeypatch.setattr(cluster, "PACE", 0.0)
+    monkeypatch.setattr(worker, "PACE", 0.0)
     local = distributed.LocalCluster(1, threads_per_worker=1, processes=False, dashboard_address=None)
     with local, connected(local.scheduler_address) as found:
         yield found
@@ -263,18 +264,18 @@ def test_a_scheduler_that_is_gone_is_one_line(tmp_path: Path) -> None:
 def test_notes_come_back_as_they_were() -> None:
     hands, note = Cluster(client_of({})), Note(NoteCode.GOES_ON, "a.checkpoint", "", {"step": 7.0})
     sent: list[Any] = []
-    worker = SimpleNamespace(
+    dask_worker = SimpleNamespace(
         get_current_task=lambda: "key", state=SimpleNamespace(tasks={"key": SimpleNamespace(state="executing")}),
         log_event=lambda topic, message: sent.append(message),
     )  # fmt: skip
-    cluster.teller(worker, "topic")(("digest", note))
+    teller(dask_worker, "topic")(("digest", note))
     assert type(sent[0][1]["code"]) is str  # msgpack takes no other
     hands.hear((0.0, sent[0]))
     assert hands.heard() == [("digest", note)]
     assert hands.heard() == []
-    worker.state.tasks.clear()
+    dask_worker.state.tasks.clear()
     with pytest.raises(RunnerError, match="stopped"):
-        cluster.teller(worker, "topic")(("digest", 0.5))
+        teller(dask_worker, "topic")(("digest", 0.5))
 
 
 def test_a_worker_writes_what_this_machine_cannot(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -47,7 +47,7 @@ def test_a_study_ends_with_its_verdict(
 ) -> None:
     """The whole way from a command to an exit code; the runs and what is found in them are made up."""
     checks = (Check("group", "a number", CHECKS[outcome], 0.0, "absolute", "source"),) if outcome in CHECKS else ()
-    monkeypatch.setattr(conducted, "compute", lambda study, store, settings: {})
+    monkeypatch.setattr(conducted, "compute", lambda *given: {})
     monkeypatch.setattr(conducted, "more_of", lambda record: {})
     monkeypatch.setattr(frames, "analyse", lambda study, results, store: Analysis((), checks))
     found, out, err = verify(*asked(name), "--json", "--yes", "--out", "study")

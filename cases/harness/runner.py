@@ -51,9 +51,8 @@ def pending(study: Study, store: Store) -> list[Run]:
 
 def to_be_done(run: Run, result: Result) -> bool:
     """Whether a run has no Result yet, or a failed one that counts for nothing."""
-    if result is None or result.status != "failed":
-        return result is None
-    return run.again or result.failure.kind is FailureKind.WORKER_DIED
+    died = result is not None and result.failure is not None and result.failure.kind is FailureKind.WORKER_DIED
+    return result is None or (run.again and result.status == "failed") or died
 
 
 def perform(run: Run, digest: str, folder: Path, threads: int, every: float = inf) -> Result:
