@@ -394,13 +394,30 @@ def test_the_examples_have_the_digits_of_other_programs(
         pytest.skip(f"{needed} is not there")
     code, out, _ = verify("example", language, "toy")
     assert code == 0
-    typed = out.partition("--solver '")[2].partition("'")[0].replace("python ", f"{sys.executable} ")
+    typed = out.partition("--solver '")[2].partition("'")[0]
     words = ["--as", "mpm", "--solution", solution, "--out", "study", "--json"]
     code, out, _ = verify("mms", "--quick", "--solver", typed, *words)
     found = [r["errors"]["u"]["rms"] for r in json.loads(out)["runs"] if r["courant"] == 0.4]
     for error, digits in zip(sorted(found, reverse=True), DIGITS[solution], strict=True):
         assert digits is None or error == pytest.approx(digits, rel=2e-4)
     assert code == 0
+
+
+def test_the_command_of_an_example_runs_with_a_python_that_has_numpy(
+    verify: Call, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where `python` is none, or another one, it is the one that runs verify, by its path."""
+    monkeypatch.setenv("PATH", str(tmp_path))
+    _, out, _ = verify("example", "python", "toy")
+    assert f"--solver '{sys.executable} ./toy/solver.py {{case}} {{out}}'" in out
+    (tmp_path / "python").symlink_to(sys.executable)
+    monkeypatch.setattr(sys, "executable", str(tmp_path / "python"))
+    _, out, _ = verify("example", "numpy-class", "other")
+    assert "--solver 'python ./other/adapter.py {case} {out}'" in out
+    (tmp_path / "python").unlink()
+    typed = ("--solver", "python mine.py {case} {out}", "--solution", "bump", "--order", "2")
+    _, _, err = verify("mms", *typed)
+    assert f"there is no program 'python'; give its path, such as {tmp_path / 'python'}" in err
 
 
 FINEST = {"clamped_shear:G=1e-6": (64, 1.099e-9)}
@@ -414,7 +431,7 @@ def test_the_finest_level_has_the_digits_of_other_programs(verify: Call, tmp_pat
         pytest.skip(f"{needed} is not there")
     ((solution, (cells, known)),) = FINEST.items()
     _, out, _ = verify("example", language, "toy")
-    typed = out.partition("--solver '")[2].partition("'")[0].replace("python ", f"{sys.executable} ")
+    typed = out.partition("--solver '")[2].partition("'")[0]
     axes = ["--cells", str(cells), "--courant", "0.4", "--time-step", "h", "--order", "0"]
     _, out, _ = verify("mms", "--solver", typed, "--solution", solution, *axes, "--out", "study", "--json")
     (run,) = [run for run in json.loads(out)["runs"] if run["courant"] == 0.4]

@@ -1,8 +1,10 @@
 """Command of somebody else's solver: its words, its two folders, and the version of what it names."""
 
 import hashlib
+import re
 import shlex
 import shutil
+import sys
 from contextlib import suppress
 from pathlib import Path
 
@@ -27,7 +29,8 @@ def parts(command: str) -> list[str]:
             f"or name what runs it, such as 'python {command}'"
         )
     if shutil.which(words[0]) is None:
-        raise ValueError(f"--solver {command!r}: there is no program {words[0]!r}; give its path, such as ./mycode")
+        path = sys.executable if re.fullmatch(r"python[\d.]*", words[0]) else "./mycode"
+        raise ValueError(f"--solver {command!r}: there is no program {words[0]!r}; give its path, such as {path}")
     return words
 
 
