@@ -379,7 +379,7 @@ def test_a_problem_of_ones_own_is_a_file(tmp_path: Path) -> None:
 
 
 PURE = {
-    "parameters": ("nu", "damping", "mu", "rough", "settlement", "transits", "stretch"),
+    "parameters": ("nu", "damping", "mu", "rough", "settlement", "transits", "stretch", "ramp"),
     "material": ("name", "sigma", "nu", "void"),
 }
 
@@ -396,6 +396,8 @@ def test_an_exported_benchmark_says_what_is_not_judged_here() -> None:
     said = folder_words(steep, create(PROBLEMS, "rankine"))
     assert said.count("; not judged: how near it comes was measured at the usual parameters |") == 2
     assert "; not judged:" not in folder_words(usual, create(PROBLEMS, "rankine"))
+    block = exported("sliding_block", None, 16, None, 0.4)
+    assert "; the limit of refinement within 0.0" in folder_words(block, create(PROBLEMS, "sliding_block"))
     column = exported("self_weight", None, 16, None, 0.4)
     assert {one.name: (one.unit, one.rests) for one in column.record.known} == {
         "height": ("m", True), "base_stretch": ("", True), "base_force": ("", True), "cell_stress": ("Pa", True)

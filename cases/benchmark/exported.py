@@ -32,7 +32,7 @@ class KnownRecord:
     """Number of a run and what it is held against, see cases/benchmark/problem.py: Held.
 
     `unjudged` is the code of why the number is shown here and not judged, empty where it is; what `rests` is judged of
-    a body at rest alone.
+    a body at rest alone; `limit`, unless 0, is what the Richardson limit is held within beside every grid.
     """
 
     name: str
@@ -45,6 +45,7 @@ class KnownRecord:
     unit: str
     unjudged: Unjudged
     rests: bool
+    limit: float
 
 
 @dataclass(frozen=True)
