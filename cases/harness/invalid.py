@@ -15,6 +15,7 @@ KINDS = {
     "model_type": "a table", "dataclass_type": "a table", "path_type": "a path",
 }  # fmt: skip
 ABSENT = {"missing": "is missing", "missing_argument": "is missing"}
+CHOICES = ("literal_error", "enum")
 UNKNOWN = {"extra_forbidden": "is not known", "unexpected_keyword_argument": "is not known"}
 
 
@@ -25,15 +26,15 @@ def invalid(error: ValidationError) -> str:
     if first["type"] in ABSENT and where:
         return f"{where} {ABSENT[first['type']]}"
     value = f"{where} = {shortened(repr(first['input']))}" if where else "its values"
-    said = wrong(first)
-    return f"{value}{said if said.startswith(' ') else f': {said}'}"
+    return value + wrong(first)
 
 
 def wrong(first: Mapping[str, Any]) -> str:
-    """Fault of a value, an entry of `ValidationError.errors`: ` must be a number`, or a sentence of ours."""
-    kind, message = first["type"], first["msg"].removeprefix("Value error, ")
-    if kind in KINDS:
-        return f" must be {KINDS[kind]}"
+    """Fault of a value, an entry of `ValidationError.errors`: ` must be a number`, or a colon and what is said of it."""
+    kind = first["type"]
+    if kind in KINDS or kind in CHOICES:
+        return f" must be {first['ctx']['expected'] if kind in CHOICES else KINDS[kind]}"
     if kind in UNKNOWN:
         return f" {UNKNOWN[kind]}"
-    return f" must be {message[16:]}" if message.startswith("Input should be ") else message[:1].lower() + message[1:]
+    message = first["msg"].removeprefix("Value error, ")
+    return f": {message[:1].lower()}{message[1:]}"
