@@ -47,25 +47,11 @@ Minutes = Annotated[
 ]
 
 
-def reachable(address: str | None) -> str | None:
-    """Scheduler's address, at which somebody listens: a study takes a while to build, and would end then."""
-    if address is None:
-        return None
-    from mpm_verify.cases.harness.scheduler import check_reachable
-
-    try:
-        check_reachable(address)
-    except ValueError as error:
-        raise typer.BadParameter(str(error)) from error
-    return address
-
-
 Dask = Annotated[
     str | None,
     typer.Option(
         "--dask",
         metavar="ADDRESS",
-        callback=reachable,
         help="Run on the workers of a Dask cluster: the address of its scheduler, or a scheduler file.",
         show_default="this machine",
     ),
@@ -119,6 +105,7 @@ def study_command(
     names = [item.name for item in axes]
 
     def call(**given: Any) -> int:
+        check_dask(given["dask"])
         asked = {key: given.pop(key) for key in names}
         return function(asked={key: text for key, text in asked.items() if text}, **given)
 
@@ -135,11 +122,24 @@ def common(function: Callable[..., int]) -> Callable[..., int]:
     """
 
     def call(**given: Any) -> int:
+        check_dask(given["dask"])
         return function(**given)
 
     call.__doc__, parameters = function.__doc__, inspect.signature(function).parameters.values()
     typed = [item for item in parameters if item.name != "out" and item.kind is not inspect.Parameter.VAR_KEYWORD]
     return signed(call, {item.name: (item.annotation, item.default) for item in typed})
+
+
+def check_dask(address: str | None) -> None:
+    """Raise an error of one line where no scheduler listens: a study takes a while to build, and would end then."""
+    if address is None:
+        return
+    from mpm_verify.cases.harness.scheduler import check_reachable
+
+    try:
+        check_reachable(address)
+    except ValueError as error:
+        raise typer.TyperException(str(error)) from error
 
 
 def signed(call: Callable[..., int], own: Mapping[str, tuple[Any, Any]]) -> Callable[..., int]:
