@@ -30,7 +30,7 @@ def invalid(error: ValidationError) -> str:
 
 
 def wrong(first: Mapping[str, Any]) -> str:
-    """Fault of a value, an entry of `ValidationError.errors`: ` must be a number`, or a colon and what is said of it."""
+    """Fault of a value, an entry of `ValidationError.errors`: ` must be a number`, or a colon and what is said."""
     kind = first["type"]
     if kind in KINDS or kind in CHOICES:
         return f" must be {first['ctx']['expected'] if kind in CHOICES else KINDS[kind]}"
