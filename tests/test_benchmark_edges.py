@@ -51,7 +51,7 @@ def test_the_wall_of_rankine_and_its_surcharge_are_told(tmp_path: Path) -> None:
     assert record.duration == pytest.approx(2 * wall.duration, rel=1e-12)  # out and back
     assert record.edges["top"] == EdgeRecord("free", 0.0, (0.0, -1e5))
     assert "traction on the body 0.0, -100000.0" in readme
-    assert f"distance = {wall.distance} and duration = {wall.duration}; they are smooth" in readme
+    assert f"distance = {wall.distance} m and duration = {wall.duration} s; they are smooth" in readme
 
 
 @pytest.mark.parametrize(("problem", "surface"), [("footing", "rough"), ("footing:rough=0", "smooth")])

@@ -25,6 +25,7 @@ from mpm_verify.reports.export.document import document
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences.remarks import notes
 from mpm_verify.solver.failure import Failure, FailureKind
+from mpm_verify.solver.plugins import CASES, available
 from mpm_verify.verify.main import main
 from mpm_verify.verify.run import Settings, conduct, more_of, usage
 from mpm_verify.verify.terminal.checks import closest, sentence
@@ -372,6 +373,6 @@ def test_report_of_a_folder_that_cannot_be_drawn(
     for code, out, err in said.values():
         assert (code, out, err.count("\n")) == (2, "", 1)
         assert err.startswith("verify: ")
-    assert "is of the case tea, and this version has any_code, benchmark, column, detect, element" in said["tea"][2]
+    assert f"is of the case tea, and this version has {', '.join(available(CASES))}; use" in said["tea"][2]
     assert "run its study to the end" in said["empty"][2]
     assert "left as it is" in said["broken"][2]

@@ -43,6 +43,7 @@ SEEN: dict[str, set[str]] = {
     "components of the force exchanged": {"throw_growing", "sums", "force"},
     "force a fifth too large": {"throw_growing", "sums", "force"},
     "force at x": {"force"},
+    "force at (Y, X)": {"force"},
     "force one step late": {"throw_growing"},
     "stress twice as large": {"divergence_x"},
     "FLIP ratio ignored (PIC)": {"keep"},

@@ -19,6 +19,7 @@ from mpm_verify.solver.plugins import (
     SMOOTHINGS,
     SOLUTIONS,
     TRANSFERS,
+    available,
     create,
     label,
     load,
@@ -90,8 +91,7 @@ def test_parameters_and_paths(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
         create(SOLUTIONS, "own.py:B=1")
     with pytest.raises(
         ValueError,
-        match=r"^no case 'own.py'; choose from any_code, benchmark, column, detect, element, exact, mms, objectivity, "
-        r"wave_bar$",
+        match=rf"^no case 'own.py'; choose from {', '.join(available(CASES))}$",
     ):
         load(CASES, "own.py")
 

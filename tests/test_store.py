@@ -291,13 +291,13 @@ def test_a_result_of_another_format_is_not_read_and_not_run_again(store: Store) 
     ("text", "says"),
     [
         ("{", "is broken and was left as it is"),
-        ("[]", "is of the case None, and this version has any_code, benchmark, box, column, detect, element"),
+        ("[]", f"is of the case None, and this version has {', '.join(available(CASES))}; use"),
         ('{"format": 2}', "is of the case None"),
         ('{"case": "mms"}', "has format None, this version reads 2"),
         ('{"format": 1, "case": "beam"}', "has format 1, this version reads 2"),
         (
             '{"format": 2, "case": "beam"}',
-            "is of the case beam, and this version has any_code, benchmark, box, column, detect, element",
+            f"is of the case beam, and this version has {', '.join(available(CASES))}; use",
         ),
         ('{"format": 2, "case": ["mms"]}', "is of the case "),
     ],
