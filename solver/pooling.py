@@ -66,11 +66,11 @@ def gather(volume, constants, cell, V0, sigma, history, column, w, sums):
             w[p] = void - volume(constants, sigma[p, 0], sigma[p, 1], sigma[p, 2])
             sums[k, ALL] += V0[p]
             sums[k, COUNT] += 1.0
-            sums[k, VOID] += V0[p] * void
             side = PULLED if w[p] > 0.0 else PRESSED
             if w[p] > 0.0:
                 sums[k, OPEN] += V0[p]
                 sums[k, D] += V0[p] * w[p]
+                sums[k, VOID] += V0[p] * void
             else:
                 sums[k, C] -= V0[p] * w[p]
             for a in range(4):
@@ -79,7 +79,7 @@ def gather(volume, constants, cell, V0, sigma, history, column, w, sums):
 
 @kernel(
     f8(
-        *[function_type(SIGNATURE) for SIGNATURE in (VOLUME, SCALE, STORED)],
+        *[function_type(signature) for signature in (VOLUME, SCALE, STORED)],
         F1,
         I1,
         F1,

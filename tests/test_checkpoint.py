@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cache
@@ -146,6 +147,14 @@ def test_a_damaged_checkpoint_is_told_and_not_used(how: float, tmp_path: Path) -
     assert (path.exists(), path.with_suffix(".unused").exists()) == (False, True)
 
 
+def test_a_folder_in_its_way_is_told(tmp_path: Path) -> None:
+    path = tmp_path / "a.checkpoint"
+    path.mkdir()
+    done, notes = gone_on(SAND, path)
+    assert notes[0] == Note(NoteCode.DAMAGED, "a.checkpoint", "a.unused")
+    assert differ(straight(SAND), done) == set()
+
+
 def test_a_checkpoint_of_another_run_or_of_other_sources_is_not_used(tmp_path: Path) -> None:
     path, other = tmp_path / "a.checkpoint", replace(SAND, g=9.81)
     stopped(other, path)
@@ -264,6 +273,9 @@ def test_what_does_not_fit_is_not_written() -> None:
     assert not fits(found, {"a": Inner(), "b": []})
     with pytest.raises(TypeError, match="keys"):
         Taken({1: 2})
+    for unknown in ({1}, deque([1]), bytearray(1), np.random.default_rng(1)):
+        with pytest.raises(TypeError, match="no checkpoint holds a"):
+            Taken({"a": unknown})
 
 
 # ---- SIGKILL

@@ -18,12 +18,12 @@ from mpm_verify.cases.detect.defect import NONE, Defect, defects, replaced
 from mpm_verify.cases.detect.mutate import files, mutant, mutants, sampled
 from mpm_verify.cases.detect.plant import Planted
 from mpm_verify.cases.detect.rates import Row, alone, rate, rates, redundant
-from mpm_verify.cases.detect.run import CHECKS, Run
+from mpm_verify.cases.detect.run import CHECKS, JUDGES, Run
 from mpm_verify.cases.harness.contract import case_named
 from mpm_verify.reports.sentences.detect import quote
 from mpm_verify.solver.source_hash import TOP
 from mpm_verify.verify.commands.detect import told_list
-from mpm_verify.verify.detecting import rule
+from mpm_verify.verify.detecting import checks, rule
 from mpm_verify.verify.terminal import detect as terminal
 
 ROW = Row("one", "cpdi", "order", "index", "solver/step.py", False, "", {})
@@ -140,6 +140,12 @@ def test_known_answers_are_given_and_each_part_can_fail(monkeypatch: pytest.Monk
     monkeypatch.undo()
     monkeypatch.setattr("mpm_verify.cases.judging.fit.STEADY", 1.5)
     assert rule.ask()[0] == "FAIL"
+
+
+@pytest.mark.parametrize("check", JUDGES)
+def test_the_judge_is_sound(check: str, tmp_path: Path) -> None:
+    """A check that fails on the sound package notices nothing."""
+    assert checks.CHECKS[check](checks.Subject("cpdi", tmp_path, tmp_path, True)) == ("PASS", "")
 
 
 def test_blind_needs_a_key(tmp_path: Path) -> None:

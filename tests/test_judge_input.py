@@ -259,3 +259,14 @@ def test_a_size_and_a_count_that_contradict_each_other_are_refused(tmp_path: Pat
     assert "is 1 elsewhere; mend one, or leave a column out" in str(said.value)
     assert "\n" not in str(said.value)
     assert len(points(f"elements,h,error\n{wrong}", tmp_path)) == 5  # of an adapted mesh they may be any number
+    plane = "\n".join(f"{n**2},{1 / (20 if n == 16 else n)},{1e-2 / n}" for n in sides)
+    with pytest.raises(ValueError, match=r"line 4: h = '0\.05' and ncells = 256 .*: h\^2 times ncells is 1 elsewhere"):
+        points(f"ncells,h,error\n{plane}", tmp_path)
+
+
+def test_sizes_are_compared_within_a_refinement(tmp_path: Path) -> None:
+    """Triangles are twice as many as quads of the same size."""
+    rows = "\n".join(
+        f"{m},{k * n**2},{1 / n},{1e-2 / n}" for m, k in (("quad", 1), ("tri", 2)) for n in (8, 16, 32, 64)
+    )
+    assert len(points(f"method,ncells,h,error\n{rows}", tmp_path)) == 8

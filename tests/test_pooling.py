@@ -10,6 +10,8 @@ from scipy.integrate import quad
 
 from mpm_verify.cases.box.execute import execute, setup
 from mpm_verify.cases.box.run import ROWS, Run
+from mpm_verify.cases.column.execute import execute as column
+from mpm_verify.cases.column.run import ColumnRun
 from mpm_verify.solver.basis.cpdi import Cpdi
 from mpm_verify.solver.boundary import box
 from mpm_verify.solver.layout import rectangle
@@ -227,6 +229,12 @@ def test_refusals() -> None:
     for name, says in (("neo_hookean", "a material that opens"), ("ubcsand:void=1,me=0.5", "ne = me")):
         with pytest.raises(ValueError, match=says):
             Pooling().start(create(MATERIALS, name))
+
+
+def test_a_column_whose_moduli_do_not_pool_runs_without() -> None:
+    run = ColumnRun(material="ubcsand:ne=0.4", cells=2, aspect=2.0, channel=4.0, duration=0.01, ppc=4)
+    done = column(run)[0]
+    assert (done.status, done.values["unbooked"]) == ("finished", 0.0)
 
 
 # ---- in runs

@@ -252,13 +252,18 @@ def check_sizes(cells: Cells, rows: Sequence[tuple[int, list[str]]]) -> None:
     at = next((k for k, name in enumerate(names) if name in sizes.CELLS), None)
     if at is None or "h" not in cells.taken:
         return
-    counts = [(line, texts, sheet.number(texts[at])) for line, texts in rows]
-    known = [(line, texts, count) for line, texts, count in counts if count and 0 < count < inf]
-    if found := sizes.apart([(1 / level(cells, line, texts), count) for line, texts, count in known]):
-        line, texts, _ = known[found[0]]
-        name = cells.sheet.header[at]
-        usual = f"h times {name} is {found[1]:.3g} elsewhere; mend one, or leave a column out"
-        raise cells.complaint(line, "h", texts, f"and {name} = {texts[at].strip()} contradict each other: {usual}")
+    refined: dict[tuple[str, str], list[tuple[int, list[str], float]]] = {}
+    for line, texts in rows:
+        count = sheet.number(texts[at])
+        if count and 0 < count < inf:
+            key = cells.text("method", texts), cells.text("quantity", texts)
+            refined.setdefault(key, []).append((line, texts, count))
+    for known in refined.values():
+        if found := sizes.apart([(1 / level(cells, line, texts), count) for line, texts, count in known]):
+            line, texts, _ = known[found[0]]
+            name, of = cells.sheet.header[at], ("h", "h^2", "h^3")[found[1] - 1]
+            usual = f"{of} times {name} is {found[2]:.3g} elsewhere; mend one, or leave a column out"
+            raise cells.complaint(line, "h", texts, f"and {name} = {texts[at].strip()} contradict each other: {usual}")
 
 
 def measured(cells: Cells, line: int, texts: list[str], role: str) -> float | None:

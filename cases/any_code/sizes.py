@@ -9,30 +9,28 @@ POWERS = (1, 2, 3)  # cells along a side, in a plane, in space
 NEAR = 0.1  # in the logarithm: sizes may be rounded, and meshes not alike
 
 
-def apart(sizes: Sequence[tuple[float, float]]) -> tuple[int, float] | None:
+def apart(sizes: Sequence[tuple[float, float]]) -> tuple[int, int, float] | None:
     """Row whose size and number of cells are not those of the others; None where all agree.
 
     Parameters
     ----------
     sizes
-        Cell size h and number of cells of each row.
+        Cell size h and number of cells of each row of one refinement.
 
     Returns
     -------
-    (int, float) or None
-        The row, and h times cells in the others.
+    (int, int, float) or None
+        The row, the power of h by which most of the others agree, and that power of h times cells in them.
     """
-    tried = [furthest(sizes, power) for power in POWERS]
-    if not sizes or min(miss for _, miss, _ in tried) <= NEAR:
+    tried = [(power, misses(sizes, power)) for power in POWERS]
+    if not sizes or min(max(off) for _, (off, _) in tried) <= NEAR:
         return None
-    at, _, usual = tried[0]
-    return at, usual
+    power, (off, usual) = min(tried, key=lambda one: median(one[1][0]))
+    return off.index(max(off)), power, usual
 
 
-def furthest(sizes: Sequence[tuple[float, float]], power: int) -> tuple[int, float, float]:
-    """Row whose h^power cells is furthest from the median of all, how far in the logarithm, and that median."""
+def misses(sizes: Sequence[tuple[float, float]], power: int) -> tuple[list[float], float]:
+    """How far h^power cells of each row is from the median of all, in the logarithm, and that median."""
     found = [h**power * cells for h, cells in sizes]
     usual = median(found) if found else 1.0
-    misses = [abs(log(one / usual)) for one in found]
-    at = max(range(len(found)), key=misses.__getitem__, default=0)
-    return at, max(misses, default=0.0), usual
+    return [abs(log(one / usual)) for one in found], usual

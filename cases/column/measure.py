@@ -209,18 +209,19 @@ def scaled(model: Model) -> dict[str, float]:
 
 
 def books(model: Model) -> dict[str, float]:
-    """Means over the body: volume ratio, plastic dilation, and `unbooked`, what no strain accounts for in ln J.
+    """Means over the body: volume ratio, plastic dilation, and `unbooked`, of ln J what no strain accounts for.
 
     ln J is elastic volume, plastic dilation and void strain; pooling moves them between particles and keeps the mean.
+    Without pooling `unbooked` is 0.
     """
     p, memory = model.particles, model.material.memory
     whole, J = float(p.V0.sum()), p.J
-    found = {"volume": float((p.V0 * J).sum()) / whole, "dilated": 0.0, "unbooked": 0.0}
-    if model.material.compression is None:
-        return found
-    dilated, void = (p.history[:, memory.index(name)] for name in ("eps_v_p", "void"))
-    rest = np.log(J) - dilated - void + model.material.compression().held(p.sigma)
-    return found | {"dilated": float((p.V0 * dilated).sum()) / whole, "unbooked": float((p.V0 * rest).sum()) / whole}
+    dilated, void = (p.history[:, memory.index(name)] if name in memory else 0 * J for name in ("eps_v_p", "void"))
+    found = {"volume": float((p.V0 * J).sum()) / whole, "dilated": float((p.V0 * dilated).sum()) / whole}
+    if model.pooling is None or model.pooling.compression is None:
+        return found | {"unbooked": 0.0}
+    rest = np.log(J) - dilated - void + model.pooling.compression.held(p.sigma)
+    return found | {"unbooked": float((p.V0 * rest).sum()) / whole}
 
 
 def final(run: ColumnRun, curves: dict[str, Floats]) -> dict[str, float]:

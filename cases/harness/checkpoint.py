@@ -110,16 +110,19 @@ class Checkpoint:
         if self.path is None:
             return None
         for cut in self.path.parent.glob(f".{self.path.name}.*"):  # of a process that was killed while it wrote
-            cut.unlink(missing_ok=True)
+            with suppress(OSError):
+                cut.unlink(missing_ok=True)
         if not self.path.exists():
             return None
         try:
             with self.path.open("rb") as file:
                 self.read(file, model)
-        except Unusable as unusable:
+        except (Unusable, OSError) as error:
             aside = self.path.with_suffix(".unused")
-            self.path.replace(aside)
-            self.tell(Note(unusable.code, self.path.name, aside.name))
+            with suppress(OSError):
+                self.path.replace(aside)
+            code = error.code if isinstance(error, Unusable) else NoteCode.DAMAGED
+            self.tell(Note(code, self.path.name, aside.name))
             return None
         self.tell(Note(NoteCode.GOES_ON, self.path.name, numbers={"step": model.steps}))
         return model.steps

@@ -4,6 +4,7 @@ What changes while a run goes on is found, not listed: the attributes of the mod
 frozen, and of all that watches it. A strategy, a function and anything else is made by the run's parameters, and stays.
 """
 
+from collections import deque
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -12,6 +13,7 @@ import numpy as np
 from mpm_verify.solver.model import Model, Observer
 
 CONSTANT = {"constant": True}  # for anything that is made anew
+UNKNOWN = (set, deque, bytearray, np.random.Generator)  # they change, and are not written
 
 
 def parts(model: Model) -> dict[str, Any]:
@@ -30,7 +32,7 @@ class Taken:
         self.state = self.of(value)
 
     def of(self, value: Any) -> Any:
-        """Value for the document. Raises TypeError for a dictionary whose keys are no texts."""
+        """Value for the document. Raises TypeError for keys of a dictionary that are no texts, and for UNKNOWN."""
         if value is None or isinstance(value, bool | int | float | str):
             return value
         if isinstance(value, np.generic):
@@ -46,6 +48,8 @@ class Taken:
                 self.known[id(value)] = len(self.arrays)
                 self.arrays.append(value)
             return {"array": self.known[id(value)]}
+        if isinstance(value, UNKNOWN):
+            raise TypeError(f"no checkpoint holds a {type(value).__name__}; keep numbers, texts, lists or arrays")
         if not changes(value) or id(value) in self.known:
             return CONSTANT
         self.known[id(value)] = value

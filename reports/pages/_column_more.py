@@ -93,7 +93,8 @@ def books(analysis: ColumnAnalysis) -> Section:
     rows = []
     for one in analysis.ran:
         v = one.values
-        parts = (f"{v['dilated']:.4f}", f"{v['void_strain']:.4f}", f"{v['volume']:.4f}", f"{abs(v['unbooked']):.1e}")
+        unbooked = f"{abs(v['unbooked']):.1e}" if one.run.pooling else ""
+        parts = (f"{v['dilated']:.4f}", f"{v['void_strain']:.4f}", f"{v['volume']:.4f}", unbooked)
         space = (f"{v['crowding']:.3f}", f"{v['volume'] / v['crowding']:.3f}", f"{v['area']:.3f}")
         rows.append((words.label(analysis.study, one.run), *parts, *space, percent(v["creep"])))
     return Section("volume", "Volume of the heap", [words.BOOKS], tables=[Table("Means at the end", head, tuple(rows))])

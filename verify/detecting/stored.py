@@ -13,7 +13,7 @@ from mpm_verify.cases.harness import identity
 from mpm_verify.cases.harness.analysis import analyse
 from mpm_verify.cases.harness.build import Asked, build
 from mpm_verify.cases.harness.runner import to_be_done
-from mpm_verify.cases.harness.store import Store, StoreError
+from mpm_verify.cases.harness.store import Disk, Store, StoreError
 from mpm_verify.cases.judging.records import Outcome, ReasonCode
 from mpm_verify.cases.mms.recorded import TABLE
 from mpm_verify.cases.mms.run import Result, Run
@@ -45,17 +45,16 @@ def made(run: Run, errors: dict[str, float], status: Any = "finished") -> Result
 def store(work: Path) -> Answer:
     """A Result that is put, read, cut, of another format, locked; and names of runs."""
     run = Run(cells=8)
-    kept, result = Store(work / "kept"), made(run, {"u": 1.5, "v": 2.0, "F": 3.0, "sigma": 4.0})
-    kept.runs.mkdir(parents=True)
     order: list[str] = []
 
-    class Watched(Store):
-        @staticmethod
-        def write(path: Path, data: bytes) -> None:
+    class Watched(Disk):
+        def write(self, path: Path, data: bytes) -> None:
             order.append(path.suffix)
-            Store.write(path, data)
+            super().write(path, data)
 
-    Watched(work / "kept").put(result, {"a": np.arange(3.0)})
+    kept, result = Store(work / "kept", disk=Watched()), made(run, {"u": 1.5, "v": 2.0, "F": 3.0, "sigma": 4.0})
+    kept.runs.mkdir(parents=True)
+    kept.put(result, {"a": np.arange(3.0)})
     path = kept.runs / f"{run.digest}.json"
     same = kept.get(run.digest) == result and kept.arrays(run.digest)["a"].tolist() == [0, 1, 2]
     whole = path.read_bytes()
