@@ -229,7 +229,7 @@ def test_checkpoints_of_no_run_of_the_study_are_told(tmp_path: Path) -> None:
     for name in (study.runs[0].digest, "0123", ".0123.checkpoint.77"):
         (store.runs / f"{name}.checkpoint").touch()
     assert store.abandoned(study) == ["0123.checkpoint"]
-    assert words.abandoned(["0123.checkpoint"]).startswith("0123.checkpoint is of a run that this study has not")
+    assert words.abandoned(["0123.checkpoint"]).startswith("0123.checkpoint belongs to no run of this study")
     assert words.abandoned([]) == ""
 
 

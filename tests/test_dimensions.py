@@ -441,7 +441,7 @@ def test_a_body_without_walls_has_the_same_dimensions() -> None:
 
 OURS = "true {case} {out}"
 REFUSED = {
-    "the reference solver, one": (["mms", "--solution", "bar1d"], "in one dimension is for a solver of your own"),
+    "the reference solver, one": (["mms", "--solution", "bar1d"], "has one dimension and is for a solver of your own"),
     "the reference solver, around": (["mms", "--solution", "bump_rz"], "is in plane strain: verify mms --solver"),
     "graded": (["graded", "--solution", "cylinder_rz"], "solver of your own"),
     "one in two": (["export", "bar1d", "--dim", "2", "--to", "case"], "has one dimension, dim = 2 cannot be"),

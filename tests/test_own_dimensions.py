@@ -216,8 +216,8 @@ def test_a_grid_that_reaches_beyond_the_axis_is_refused(own: Write) -> None:
 
 @pytest.mark.parametrize(
     ("name", "says"),
-    [("rod", "in one dimension is for a solver of your own, the reference solver has two: verify mms --solver "),
-     ("can", "axisymmetric is for a solver of your own, the reference solver is in plane strain: verify mms ")],
+    [("rod", "has one dimension and is for a solver of your own, the reference solver has two: verify mms --solver "),
+     ("can", "is axisymmetric and is for a solver of your own, the reference solver is in plane strain: verify mms ")],
 )  # fmt: skip
 def test_the_reference_solver_has_two_dimensions(own: Write, verify: Call, name: str, says: str) -> None:
     path = own(BODIES[name][0])

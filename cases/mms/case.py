@@ -153,12 +153,12 @@ def check_ours(runs: Sequence[Run]) -> None:
     check_shifted(runs)
     for run in runs:
         plugin = create(SOLUTIONS, run.solution)
-        state = {1: "in one dimension", 3: "in three dimensions"}.get(run.dim, "axisymmetric")
+        state = {1: "has one dimension", 3: "has three dimensions"}.get(run.dim, "is axisymmetric")
         if run.dim != 2 or axisymmetric(plugin):
             what = f"--solution {shlex.quote(run.solution)}" + " --dim 3" * (dimension(plugin) == 2 < run.dim)
             has = "is in plane strain" if run.dim == 2 else "has two"
             raise ValueError(
-                f"{label(run.solution)} {state} is for a solver of your own, the reference solver {has}: "
+                f"{label(run.solution)} {state} and is for a solver of your own, the reference solver {has}: "
                 f"verify mms --solver './mine {{case}} {{out}}' {what}"
             )
 

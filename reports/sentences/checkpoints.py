@@ -24,9 +24,9 @@ def abandoned(files: Sequence[str]) -> str:
     """Line on checkpoints of no run of the study; empty where there are none."""
     if not files:
         return ""
-    several = len(files) > 1
+    one = len(files) == 1
     return (
-        f"{', '.join(files)} {'are' if several else 'is'} of {'runs' if several else 'a run'} that this study has not, "
-        f"as with other sources, and {'are' if several else 'is'} not used; delete {'them' if several else 'it'} if "
-        "nobody needs it"
+        f"{', '.join(files)} {'belongs' if one else 'belong'} to no run of this study, perhaps because sources have "
+        f"changed, and {'is' if one else 'are'} not used; delete {'it' if one else 'them'} if nobody needs "
+        f"{'it' if one else 'them'}"
     )
