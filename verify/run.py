@@ -77,7 +77,9 @@ def usage() -> Iterator[None]:
     except (ValueError, StoreError) as error:
         raise typer.TyperException(str(error)) from error
     except MemoryError as error:
-        raise typer.TyperException("not enough memory; try fewer cells or --jobs 1; stored runs are kept") from error
+        raise typer.TyperException(
+            "not enough memory; try fewer cells or runs at a time; stored runs are kept"
+        ) from error
     except OSError as error:
         raise typer.TyperException(f"{error.strerror or error}: {error.filename or ''}") from error
 

@@ -132,7 +132,8 @@ class Store:
         for ending, content in files.items():
             self.disk.write(path.with_suffix(ending), content)
             if ending == ".npz" and ".log" not in files:
-                path.with_suffix(".log").unlink(missing_ok=True)  # of the run before, where it failed
+                with suppress(OSError):  # of the run before, where it failed; another machine may write here
+                    path.with_suffix(".log").unlink(missing_ok=True)
 
     def _text(self, record: Any, adapter: TypeAdapter[Any]) -> bytes:
         """A record as it is stored, with the case that it is of. Raises ValueError for one that cannot be read."""
