@@ -78,7 +78,7 @@ def usage() -> Iterator[None]:
         raise typer.TyperException(str(error)) from error
     except MemoryError as error:
         raise typer.TyperException(
-            "not enough memory; try fewer cells or runs at a time; stored runs are kept"
+            "not enough memory; try fewer cells or runs at once; stored runs are kept"
         ) from error
     except OSError as error:
         raise typer.TyperException(f"{error.strerror or error}: {error.filename or ''}") from error
