@@ -3,6 +3,7 @@
 import json
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from mpm_verify.cases.box.measure import measured, settled, top
 from mpm_verify.cases.box.run import ROWS, Result, Run
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.cases.harness.study import Study
+from mpm_verify.reports.sentences.box import control
 from mpm_verify.solver.layout import rectangle
 from mpm_verify.solver.state import Floats
 
@@ -111,6 +113,37 @@ def test_every_check_passes_and_can_fail() -> None:
         assert len(missed) == 1, name
     assert {check.outcome for check in analysed(GOOD | {"K_4": 0.6, "K_7": 2.0}).checks} == {"PASS"}
     assert {check.outcome for check in analysed({}).checks} == {"ERROR"}
+
+
+UNPOOLED = {"free": 0.7, "weight_7": 1.14, "top": 1.07, "largest": 14.4, "K_low": 0.551}  # sound sand, seed 2
+HELD = {f"weight_{k}": 0.8 for k in range(1, 6)}  # by sides that carry weight
+FAILED, ALARM, UNDECIDED = "The failing control failed, as it must: 5 of 5", "ALARM: a control", "is undecided"
+
+
+@pytest.mark.parametrize(
+    ("found", "says"),
+    [
+        ([GOOD | UNPOOLED | HELD], FAILED),
+        ([GOOD | HELD], FAILED),
+        ([GOOD | UNPOOLED], f"{ALARM} that must fail passed, so nothing sees its mistake: seed 1, control yes."),
+        ([GOOD], ALARM),
+        ([{}], UNDECIDED),
+        ([None], UNDECIDED),
+        ([GOOD | {"weight_3": np.nan}], UNDECIDED),
+        ([GOOD | HELD, GOOD | UNPOOLED], "mistake: seed 2, control yes."),
+        ([GOOD | HELD, {}], "an error: seed 2, control yes."),
+    ],
+)  # fmt: skip
+def test_a_control_whose_sides_carry_nothing_is_the_alarm(found: list[dict[str, float] | None], says: str) -> None:
+    """What sound sand without pooling misses too does not count, and each control stands alone."""
+    runs = tuple(replace(RUN, seed=k, control=True) for k in range(1, len(found) + 1))
+    study: Study[Run] = Study("t", "t", "", (replace(RUN, seed=9), *runs), axes=("seed", "control"), case="box")
+    results = {run.digest: Result(run=run, digest=run.digest, status="finished", values=values)
+               for run, values in zip(runs, found, strict=True) if values is not None}  # fmt: skip
+    record: Any = SimpleNamespace(study=study, analysis=examine(study, results, Store(Path("none"), "box")))
+    assert says in control(record)
+    record.study = replace(study, runs=study.runs[:1])
+    assert control(record) == ""
 
 
 def test_the_shifts_are_those_of_their_seed() -> None:

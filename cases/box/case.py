@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 from math import nan
 from typing import Any
 
-from mpm_verify.cases.box.run import QUICK, ROWS, Result, Run
+from mpm_verify.cases.box.run import LOW, QUICK, ROWS, Result, Run
 from mpm_verify.cases.harness.checks import Check, Way
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.cases.harness.study import Study
@@ -28,6 +28,8 @@ __all__ = ["QUICK", "Result", "Run"]
 
 FREE, WEIGHT, TOP, LARGEST, MOVING = 0.05, 0.05, 0.03, 8.0, 1e-4
 K, AROUND = 0.475, 0.075  # 0.40 to 0.55
+CARRIED = [f"V sigma_yy over the weight above, row {k}" for k in range(1, ROWS + 1)]
+SPOILT = frozenset(CARRIED[:LOW])  # by sides that carry weight; the rest fails as shipped too, K with one seed of three
 
 
 @dataclass(frozen=True)
@@ -82,8 +84,7 @@ def checks(study: Study[Run], result: Result) -> list[Check]:
     return [
         held("kinetic energy of the grid over m g H", "moving", MOVING, "at_most", "rest"),
         held("fraction of particles without stress", "free", FREE, "at_most", "no voids"),
-        *(held(f"V sigma_yy over the weight above, row {k}", f"weight_{k}", 1.0, "absolute", "equilibrium", WEIGHT)
-          for k in range(1, ROWS + 1)),
+        *(held(name, f"weight_{k}", 1.0, "absolute", "equilibrium", WEIGHT) for k, name in enumerate(CARRIED, 1)),
         held("sigma_xx over sigma_yy below two thirds", "K_low", K, "absolute", "smooth sides at rest", AROUND),
         held("top over the height of the column", "top", 1.0, "absolute", "area kept", TOP),
         held("largest sigma_yy over its mean in the lowest row", "largest", LARGEST, "at_most", "no particle alone"),

@@ -9,6 +9,7 @@ from mpm_verify.solver.plugins import MATERIALS, METHODS, SMOOTHINGS, TRANSFERS,
 
 QUICK = {"cells": (4,), "aspect": (3.5,), "drop": (0.02,), "duration": (1.0,)}
 ROWS = 7  # in which stresses are summed, over the height of the column
+LOW = round(ROWS * 2 / 3)  # rows with their middle below two thirds of the height
 
 
 @dataclass(frozen=True)
