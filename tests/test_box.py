@@ -16,6 +16,7 @@ from mpm_verify.cases.box.measure import measured, settled, top
 from mpm_verify.cases.box.run import ROWS, Result, Run
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.cases.harness.study import Study
+from mpm_verify.cases.judging.records import Outcome
 from mpm_verify.reports.sentences.box import control
 from mpm_verify.solver.layout import rectangle
 from mpm_verify.solver.state import Floats
@@ -144,6 +145,31 @@ def test_a_control_whose_sides_carry_nothing_is_the_alarm(found: list[dict[str, 
     assert says in control(record)
     record.study = replace(study, runs=study.runs[:1])
     assert control(record) == ""
+
+
+BANDS = {"free": 0.7, "K_low": 0.62, "top": 1.04, "largest": 9.0}  # in the order of the checks
+
+
+@pytest.mark.parametrize(
+    ("change", "judged"),
+    [
+        ({}, 4),
+        ({"material": "mohr_coulomb:psi=0,void=1"}, 4),  # what the box has anyway
+        ({"material": "mohr_coulomb:nu=0.4,psi=0"}, 1),
+        ({"material": "mohr_coulomb:psi=10"}, 1),
+        ({"material": "drucker_prager"}, 1),
+        ({"method": "gimp"}, 1),
+        ({"material": "mohr_coulomb:c=200,psi=0"}, 0),
+    ],
+)
+def test_bands_are_judged_where_they_were_measured(change: dict[str, str], judged: int) -> None:
+    """Elsewhere K, top and the largest are shown, voids too with cohesion; weights and rest are held everywhere."""
+    checks = analysed(GOOD | BANDS | {"moving": 1.0, "weight_2": 0.8}, **change).checks
+    assert [one.found for one in checks if one.unjudged == "not_usual"] == list(BANDS.values())[judged:]
+    outcomes = [one.outcome for one in checks]
+    assert [outcomes.count(one) for one in (Outcome.PASS, Outcome.FAIL)] == [6, 2 + judged]
+    assert outcomes.count(Outcome.INCONCLUSIVE) == 4 - judged
+    assert {one.outcome for one in analysed({}, **change).checks} == {"ERROR"}
 
 
 def test_the_shifts_are_those_of_their_seed() -> None:
