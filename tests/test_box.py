@@ -231,6 +231,11 @@ def test_without_pooling_the_sums_are_right_and_single_particles_are_not() -> No
 
 
 @pytest.mark.slow
+def test_the_quick_box_passes_with_pooling(verify: Call) -> None:
+    assert verify("box", "--pooling", "--quick")[0] == 0
+
+
+@pytest.mark.slow
 def test_the_failing_control_fails(verify: Call) -> None:
     """Sides that hold the sand carry most of its weight, as in a silo."""
     code, out, _ = verify("box", "--control", "--quick", "--out", "study")
