@@ -3,6 +3,7 @@
 import json
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,8 @@ from mpm_verify.cases.box.measure import measured, settled, top
 from mpm_verify.cases.box.run import ROWS, Result, Run
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.cases.harness.study import Study
+from mpm_verify.cases.judging.records import Outcome
+from mpm_verify.reports.sentences.box import control
 from mpm_verify.solver.layout import rectangle
 from mpm_verify.solver.state import Floats
 
@@ -113,6 +116,62 @@ def test_every_check_passes_and_can_fail() -> None:
     assert {check.outcome for check in analysed({}).checks} == {"ERROR"}
 
 
+UNPOOLED = {"free": 0.7, "weight_7": 1.14, "top": 1.07, "largest": 14.4, "K_low": 0.551}  # sound sand, seed 2
+HELD = {f"weight_{k}": 0.8 for k in range(1, 6)}  # by sides that carry weight
+FAILED, ALARM, UNDECIDED = "The failing control failed, as it must: 5 of 5", "ALARM: a control", "is undecided"
+
+
+@pytest.mark.parametrize(
+    ("found", "says"),
+    [
+        ([GOOD | UNPOOLED | HELD], FAILED),
+        ([GOOD | HELD], FAILED),
+        ([GOOD | UNPOOLED], f"{ALARM} that must fail passed, so nothing sees its mistake: seed 1, control yes."),
+        ([GOOD], ALARM),
+        ([{}], UNDECIDED),
+        ([None], UNDECIDED),
+        ([GOOD | {"weight_3": np.nan}], UNDECIDED),
+        ([GOOD | HELD, GOOD | UNPOOLED], "mistake: seed 2, control yes."),
+        ([GOOD | HELD, {}], "an error: seed 2, control yes."),
+    ],
+)  # fmt: skip
+def test_a_control_whose_sides_carry_nothing_is_the_alarm(found: list[dict[str, float] | None], says: str) -> None:
+    """What sound sand without pooling misses too does not count, and each control stands alone."""
+    runs = tuple(replace(RUN, seed=k, control=True) for k in range(1, len(found) + 1))
+    study: Study[Run] = Study("t", "t", "", (replace(RUN, seed=9), *runs), axes=("seed", "control"), case="box")
+    results = {run.digest: Result(run=run, digest=run.digest, status="finished", values=values)
+               for run, values in zip(runs, found, strict=True) if values is not None}  # fmt: skip
+    record: Any = SimpleNamespace(study=study, analysis=examine(study, results, Store(Path("none"), "box")))
+    assert says in control(record)
+    record.study = replace(study, runs=study.runs[:1])
+    assert control(record) == ""
+
+
+BANDS = {"free": 0.7, "K_low": 0.62, "top": 1.04, "largest": 9.0}  # in the order of the checks
+
+
+@pytest.mark.parametrize(
+    ("change", "judged"),
+    [
+        ({}, 4),
+        ({"material": "mohr_coulomb:psi=0,void=1"}, 4),  # what the box has anyway
+        ({"material": "mohr_coulomb:nu=0.4,psi=0"}, 1),
+        ({"material": "mohr_coulomb:psi=10"}, 1),
+        ({"material": "drucker_prager"}, 1),
+        ({"method": "gimp"}, 1),
+        ({"material": "mohr_coulomb:c=200,psi=0"}, 0),
+    ],
+)
+def test_bands_are_judged_where_they_were_measured(change: dict[str, str], judged: int) -> None:
+    """Elsewhere K, top and the largest are shown, voids too with cohesion; weights and rest are held everywhere."""
+    checks = analysed(GOOD | BANDS | {"moving": 1.0, "weight_2": 0.8}, **change).checks
+    assert [one.found for one in checks if one.unjudged == "not_usual"] == list(BANDS.values())[judged:]
+    outcomes = [one.outcome for one in checks]
+    assert [outcomes.count(one) for one in (Outcome.PASS, Outcome.FAIL)] == [6, 2 + judged]
+    assert outcomes.count(Outcome.INCONCLUSIVE) == 4 - judged
+    assert {one.outcome for one in analysed({}, **change).checks} == {"ERROR"}
+
+
 def test_the_shifts_are_those_of_their_seed() -> None:
     """Up to 0.3 spacings, the same for a seed, others for another; the mass is that of the column."""
     one, same, other = (setup(replace(RUN, seed=seed))[0].particles for seed in (1, 1, 2))
@@ -169,6 +228,11 @@ def test_without_pooling_the_sums_are_right_and_single_particles_are_not() -> No
     assert v["void"] > 0.04
     assert v["top"] > 1.04
     assert v["volume"] == pytest.approx(1 + v["void"], abs=0.01)
+
+
+@pytest.mark.slow
+def test_the_quick_box_passes_with_pooling(verify: Call) -> None:
+    assert verify("box", "--pooling", "--quick")[0] == 0
 
 
 @pytest.mark.slow

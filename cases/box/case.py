@@ -17,8 +17,8 @@ from dataclasses import dataclass, replace
 from math import nan
 from typing import Any
 
-from mpm_verify.cases.box.run import QUICK, ROWS, Result, Run
-from mpm_verify.cases.harness.checks import Check, Way
+from mpm_verify.cases.box.run import LOW, QUICK, ROWS, Result, Run
+from mpm_verify.cases.harness.checks import Check, Unjudged, Way
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.cases.harness.study import Study
 from mpm_verify.solver.plugins import MATERIALS, METHODS, SMOOTHINGS, TRANSFERS, create, label
@@ -28,6 +28,8 @@ __all__ = ["QUICK", "Result", "Run"]
 
 FREE, WEIGHT, TOP, LARGEST, MOVING = 0.05, 0.05, 0.03, 8.0, 1e-4
 K, AROUND = 0.475, 0.075  # 0.40 to 0.55
+CARRIED = [f"V sigma_yy over the weight above, row {k}" for k in range(1, ROWS + 1)]
+SPOILT = frozenset(CARRIED[:LOW])  # by sides that carry weight; the rest fails as shipped too, K with one seed of three
 
 
 @dataclass(frozen=True)
@@ -75,19 +77,33 @@ def examine(study: Study[Run], results: Mapping[str, Result], store: Store) -> B
 def checks(study: Study[Run], result: Result) -> list[Check]:
     """Checks of one run."""
     group, v = named(study, result.run), result.values
+    free, band = known(result.run)
 
-    def held(name: str, key: str, expected: float, way: Way, source: str, within: float = 0.0) -> Check:
-        return Check(group, name, v.get(key, nan), expected, way, source, within, result.failure)
+    def held(name: str, key: str, expected: float, way: Way, source: str, within: float = 0.0, why: Unjudged = ""
+             ) -> Check:  # fmt: skip
+        return Check(group, name, v.get(key, nan), expected, way, source, within, result.failure, why)
 
     return [
         held("kinetic energy of the grid over m g H", "moving", MOVING, "at_most", "rest"),
-        held("fraction of particles without stress", "free", FREE, "at_most", "no voids"),
-        *(held(f"V sigma_yy over the weight above, row {k}", f"weight_{k}", 1.0, "absolute", "equilibrium", WEIGHT)
-          for k in range(1, ROWS + 1)),
-        held("sigma_xx over sigma_yy below two thirds", "K_low", K, "absolute", "smooth sides at rest", AROUND),
-        held("top over the height of the column", "top", 1.0, "absolute", "area kept", TOP),
-        held("largest sigma_yy over its mean in the lowest row", "largest", LARGEST, "at_most", "no particle alone"),
+        held("fraction of particles without stress", "free", FREE, "at_most", "no voids", why=free),
+        *(held(name, f"weight_{k}", 1.0, "absolute", "equilibrium", WEIGHT) for k, name in enumerate(CARRIED, 1)),
+        held("sigma_xx over sigma_yy below two thirds", "K_low", K, "absolute", "smooth sides at rest", AROUND, band),
+        held("top over the height of the column", "top", 1.0, "absolute", "area kept", TOP, band),
+        held("largest sigma_yy over its mean in the lowest row", "largest", LARGEST, "at_most", "no particle alone",
+             why=band),
     ]  # fmt: skip
+
+
+def known(run: Run) -> tuple[Unjudged, Unjudged]:
+    """Marks of what is known of sand without cohesion, and of bands that were measured: of the usual sand, with CPDI.
+
+    Rest and equilibrium are known of any sand.
+    """
+    from mpm_verify.solver.voids import remembering
+
+    sand, usual = (remembering(create(MATERIALS, name)) for name in (run.material, Run.material))
+    same = sand == usual and canonical_name(METHODS, run.method) == Run.method
+    return "not_usual" if sand.cohesion else "", "" if same else "not_usual"
 
 
 def named(study: Study[Run], run: Run) -> str:

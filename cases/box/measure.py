@@ -16,12 +16,11 @@ from typing import Any
 
 import numpy as np
 
-from mpm_verify.cases.box.run import ROWS, Run
+from mpm_verify.cases.box.run import LOW, ROWS, Run
 from mpm_verify.solver.model import Model, Observer
 from mpm_verify.solver.state import Floats
 
 LOOKS = 400  # of a run
-LOW = round(ROWS * 2 / 3)  # rows with their middle below two thirds of the height
 SETTLED = 0.9  # of the duration: from then on looks are averaged, over some periods of the column's own oscillation
 
 

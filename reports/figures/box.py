@@ -11,8 +11,7 @@ from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
 
 from mpm_verify.cases.box.case import AROUND, FREE, TOP, WEIGHT, K
-from mpm_verify.cases.box.measure import LOW
-from mpm_verify.cases.box.run import ROWS, Run
+from mpm_verify.cases.box.run import LOW, ROWS, Run
 from mpm_verify.reports.figures import style
 
 Drawn = tuple[str, Run, dict[str, Any]]  # label, run, and arrays of a run

@@ -6,6 +6,7 @@ from mpm_verify.cases.benchmark.case import part
 from mpm_verify.cases.benchmark.problem import Problem
 from mpm_verify.cases.judging.records import Outcome
 from mpm_verify.reports.frames import Record
+from mpm_verify.reports.sentences import must_fail
 from mpm_verify.reports.words import paragraphs
 
 
@@ -23,11 +24,4 @@ def control(record: Record) -> str:
     for name, outcome in [*judged, *((one.group, one.outcome) for one in record.analysis.checks)]:
         if name in found:
             found[name].append(outcome)
-    passed = [name for name, outcomes in found.items() if set(outcomes) == {Outcome.PASS}]
-    if passed:
-        return f"ALARM: a control that must fail passed, so nothing sees its mistake: {'; '.join(passed)}."
-    if undecided := [name for name, outcomes in found.items() if Outcome.FAIL not in outcomes]:
-        return f"A control that must fail is undecided, or ended in an error: {'; '.join(undecided)}."
-    every = [outcome for outcomes in found.values() for outcome in outcomes]
-    refused = f"{every.count(Outcome.FAIL)} of {len(every)} refused"
-    return f"The failing control failed, as it must: {refused}." if every else ""
+    return must_fail.said(found)

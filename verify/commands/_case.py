@@ -14,7 +14,7 @@ from mpm_verify.solver.plugins import CASES, is_file, path
 from mpm_verify.verify.options import study_command, values
 
 Replicates = Annotated[int, typer.Option(help="Runs of each point, with the particles elsewhere in their cells.")]
-Quick = Annotated[bool, typer.Option("--quick", help="Few cells and particles, and no page: a verdict in seconds.")]
+Quick = Annotated[bool, typer.Option("--quick", help="A smaller or shorter study, and no page: a verdict in seconds.")]
 
 
 def add(app: typer.Typer, case: str) -> None:
