@@ -20,7 +20,6 @@ from mpm_verify.mms.export.checking import check as check_sources
 from mpm_verify.mms.manufacture import Manufactured, manufacture
 from mpm_verify.reports.export.case_folder import read, table_of, write
 from mpm_verify.solver.plugins import SOLUTIONS, create
-from mpm_verify.solver.source_hash import TOP
 from mpm_verify.verify.commands.export import made
 
 FILE = """import sympy as sp
@@ -244,7 +243,7 @@ def test_a_program_is_judged_on_it(own: Write, verify: Call, toy: str) -> None:
     file = Path("toy/solver.py")
     for fault in ("", HOOP) if toy == "python-rz" else ("",):
         file.write_text(file.read_text().replace(fault, "") if fault else file.read_text())
-        solution = own(parts, A="1e-6", speed="100") if parts else str(TOP / "tests" / "own_can.py")
+        solution = own(parts, A="1e-6", speed="100") if parts else str(Path(__file__).parent / "own_can.py")
         errors = judged(verify, solution, cells, "faulty" if fault else "sound")
         order = log(errors[-2] / errors[-1]) / log(cells[-1] / cells[-2])
         if fault:
