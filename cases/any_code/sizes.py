@@ -30,7 +30,7 @@ def apart(sizes: Sequence[tuple[float, float]]) -> tuple[int, int, float] | None
 
 
 def misses(sizes: Sequence[tuple[float, float]], power: int) -> tuple[list[float], float]:
-    """How far h^power cells of each row is from the median of all, in the logarithm, and that median."""
+    """Distance of h^power cells of each row from the median of all, in the logarithm, and that median."""
     found = [h**power * cells for h, cells in sizes]
     usual = median(found) if found else 1.0
     return [abs(log(one / usual)) for one in found], usual
