@@ -100,20 +100,20 @@ class Checkpoint:
         bool
             Whether the run goes on from there.
         """
-        step = self.found(model)
+        goes_on = self.found(model)
         self.begun = self.last = time.perf_counter()
         self.used = time.process_time()
-        return step is not None
+        return goes_on
 
-    def found(self, model: Model) -> int | None:
-        """Step from which the run goes on; None where it begins, and a file that cannot be used is moved aside."""
+    def found(self, model: Model) -> bool:
+        """Whether there is a state, which is then the model's; a file that cannot be used is moved aside."""
         if self.path is None:
-            return None
+            return False
         for cut in self.path.parent.glob(f".{self.path.name}.*"):  # of a process that was killed while it wrote
             with suppress(OSError):
                 cut.unlink(missing_ok=True)
         if not self.path.exists():
-            return None
+            return False
         try:
             with self.path.open("rb") as file:
                 self.read(file, model)
@@ -123,9 +123,9 @@ class Checkpoint:
                 self.path.replace(aside)
             code = error.code if isinstance(error, Unusable) else NoteCode.DAMAGED
             self.tell(Note(code, self.path.name, aside.name))
-            return None
+            return False
         self.tell(Note(NoteCode.GOES_ON, self.path.name, numbers={"step": model.steps}))
-        return model.steps
+        return True
 
     def keep(self, model: Model) -> None:
         """Write the state after a step, if it is time; where it cannot be written the run goes on."""

@@ -70,7 +70,7 @@ class Nearest:
     dof: int
 
 
-def nearest(h: Array, error: Array, order: float, power: int = 1) -> Nearest:
+def nearest(h: Array, error: Array, order: float, power: int) -> Nearest:
     """Fit errors (n,) to this power by the sum of the terms to this power, no term negative."""
     made = _Mixed(terms(h, order, power), (error / error[-1]) ** power)
     lower, floor = (float(part) ** (1 / power) for part in (made.fraction[1:-1].sum(), made.fraction[-1]))

@@ -2,6 +2,7 @@
 
 from math import log
 
+from mpm_verify.cases.judging.contamination import Nearest
 from mpm_verify.cases.judging.fit import LEVELS, Fit
 from mpm_verify.cases.judging.quantity import Quantity
 from mpm_verify.cases.judging.records import Contamination, Numbers, Reason, ReasonCode, Recorded
@@ -83,11 +84,10 @@ def _mixed(q: Quantity, order: float) -> Reason | None:
     fit, refutation = q.fit, Refutation(q.fit, order, q.band[0])
     if fit.orders[-1] >= q.band[0] or fit.rises_to(q.band[0]) or not refutation.contaminated(MOST):
         return None
-    best = refutation.told
-    numbers: Numbers = {"lower": best.lower, "floor": best.floor, "error": float(fit.error[-1]), "power": best.power}
-    return Reason(ReasonCode.CONTAMINATED, numbers | {"least": refutation.least(MOST)})
+    told, least = refutation.told, refutation.least(MOST)
+    return Reason(ReasonCode.CONTAMINATED, parts(told, fit) | {"power": told.power, "least": least})
 
 
-def parts(mixed: Contamination, fit: Fit) -> Numbers:
+def parts(mixed: Contamination | Nearest, fit: Fit) -> Numbers:
     """Fractions of the finest error that are not of the expected order, in the best fit, and that error."""
     return {"lower": mixed.lower, "floor": mixed.floor, "error": float(fit.error[-1])}
