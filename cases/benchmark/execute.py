@@ -1,13 +1,11 @@
 """Execution of one benchmark: the problem is set up, run until it is at its end, and measured."""
 
-import time
 from collections.abc import Callable
 
 from mpm_verify.cases.benchmark.problem import FIGURE, Measured
 from mpm_verify.cases.benchmark.run import Result, Run
-from mpm_verify.cases.harness.environment import environment
-from mpm_verify.cases.harness.memory import forget_peak, peak_memory
 from mpm_verify.cases.harness.progress import Progress
+from mpm_verify.cases.harness.stopwatch import Stopwatch
 from mpm_verify.cases.harness.study import Arrays, parameters
 from mpm_verify.solver.failure import Failure, RunFailed
 from mpm_verify.solver.step import advance, check_time_step
@@ -15,8 +13,7 @@ from mpm_verify.solver.step import advance, check_time_step
 
 def execute(run: Run, tick: Callable[[float], None] = lambda fraction: None) -> tuple[Result, Arrays]:
     """Run to the end, or to where it cannot go on: a failed run is a Result. Arrays: the curves of its figures."""
-    forget_peak()
-    started, used = time.perf_counter(), time.process_time()
+    stopwatch = Stopwatch()
     problem = run.stated
     setup = problem.setup(run)
     model, watch = setup.model, setup.watch
@@ -41,15 +38,12 @@ def execute(run: Run, tick: Callable[[float], None] = lambda fraction: None) -> 
         steps=model.steps,
         particles=len(model.particles),
         dt=model.dt,
-        wall_s=time.perf_counter() - started,
-        cpu_s=time.process_time() - used,
         crossings=model.crossings,
-        peak_memory_mb=peak_memory(),
         failure=failure,
-        environment=environment(),
         parameters=parameters("problem", problem)
         | parameters("material", model.material)
         | parameters("method", model.basis),
+        **stopwatch.told(),
     )
     curves = {f"{FIGURE}{name}/{curve}": rows for (name, curve), rows in found.curves.items()}
     return result, curves

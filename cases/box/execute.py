@@ -1,6 +1,5 @@
 """One run of the box: the column dropped, and measured until it rests."""
 
-import time
 from collections.abc import Callable
 from dataclasses import asdict
 from math import ceil, sqrt
@@ -10,9 +9,8 @@ import numpy as np
 
 from mpm_verify.cases.box.measure import Measure, settled
 from mpm_verify.cases.box.run import Result, Run
-from mpm_verify.cases.harness.environment import environment
-from mpm_verify.cases.harness.memory import forget_peak, peak_memory
 from mpm_verify.cases.harness.progress import Progress
+from mpm_verify.cases.harness.stopwatch import Stopwatch
 from mpm_verify.cases.harness.study import Arrays
 from mpm_verify.solver.boundary import Kind, box
 from mpm_verify.solver.damping import Damping
@@ -56,11 +54,11 @@ def setup(run: Run) -> tuple[Model, int]:
 
 def execute(run: Run, tick: Callable[[float], None] = lambda fraction: None) -> tuple[Result, Arrays]:
     """Run to the end, or to where it cannot go on: a failed run is a Result. Arrays: curves, the sand at the end."""
-    forget_peak()
+    stopwatch = Stopwatch()
     model, steps = setup(run)
     measure, failure = Measure(run, steps), None
     model.watch(measure, Progress(tick, steps))
-    started, used = time.perf_counter(), time.process_time()
+    stopwatch.start()
     try:
         check_time_step(model)
         for _ in range(steps):
@@ -76,13 +74,10 @@ def execute(run: Run, tick: Callable[[float], None] = lambda fraction: None) -> 
         steps=model.steps,
         particles=len(model.particles),
         dt=model.dt,
-        wall_s=time.perf_counter() - started,
-        cpu_s=time.process_time() - used,
         crossings=model.crossings,
-        peak_memory_mb=peak_memory(),
         failure=failure,
-        environment=environment(),
         parameters=asdict(model.material) | {"domain limit": model.basis.limit},  # type: ignore[call-overload]
+        **stopwatch.told(),
     )
     return result, {f"curve_{name}": column for name, column in curves.items()} | ending(model)
 

@@ -19,8 +19,8 @@ import numpy as np
 
 from mpm_verify.cases.harness.environment import numerics
 from mpm_verify.cases.harness.files import replacing
-from mpm_verify.cases.harness.memory import peak_memory
 from mpm_verify.cases.harness.state import Taken, fits, parts, written
+from mpm_verify.cases.harness.stopwatch import Stopwatch
 from mpm_verify.solver.model import Model
 
 FORMAT = 1
@@ -82,15 +82,13 @@ class Checkpoint:
     ) -> None:
         self.path, self.digest, self.every, self.tell = path, digest, every, tell
         self.before = (0.0, 0.0, 0.0)
-        self.begun = self.last = time.perf_counter()
-        self.used = time.process_time()
+        self.stopwatch, self.last = Stopwatch(), time.perf_counter()
 
     @property
     def spent(self) -> tuple[float, float, float]:
         """Wall and processor time in s since `resume`, and largest memory in MB; with those before a restart."""
-        wall, cpu, peak = self.before
-        now = time.perf_counter() - self.begun, time.process_time() - self.used
-        return wall + now[0], cpu + now[1], max(peak, peak_memory())
+        (wall, cpu, peak), (now, used, most) = self.before, self.stopwatch.spent
+        return wall + now, cpu + used, max(peak, most)
 
     def resume(self, model: Model) -> bool:
         """Begin to count time, and write the state on disk to a fresh model and its observers, where there is one.
@@ -101,8 +99,8 @@ class Checkpoint:
             Whether the run goes on from there.
         """
         goes_on = self.found(model)
-        self.begun = self.last = time.perf_counter()
-        self.used = time.process_time()
+        self.last = time.perf_counter()
+        self.stopwatch.start()
         return goes_on
 
     def found(self, model: Model) -> bool:

@@ -1,13 +1,11 @@
 """Execution of the rates and negative controls along prescribed motions, which need no grid."""
 
-import time
 from collections.abc import Callable
 
 import numpy as np
 
 from mpm_verify.cases.harness.checks import Check, Curves
-from mpm_verify.cases.harness.environment import environment
-from mpm_verify.cases.harness.memory import forget_peak, peak_memory
+from mpm_verify.cases.harness.stopwatch import Stopwatch
 from mpm_verify.cases.harness.study import Arrays, parameters
 from mpm_verify.cases.objectivity import rates as kinematic
 from mpm_verify.cases.objectivity.axes import Block
@@ -21,13 +19,11 @@ COARSE = 4  # steps of the stretched turn at which a control of first order is t
 
 def execute(run: Block, tick: Callable[[float], None] = lambda fraction: None) -> tuple[ObjectivityResult, Arrays]:
     """Follow all motions."""
-    forget_peak()
-    started, used = time.perf_counter(), time.process_time()
+    stopwatch = Stopwatch()
     curves, checks, values = prescribed(run)
     result = ObjectivityResult(
         run=run, digest=run.digest, status="finished", checks=checks, values=values, particles=run.particles,
-        dt=1 / run.steps, wall_s=time.perf_counter() - started, cpu_s=time.process_time() - used,
-        peak_memory_mb=peak_memory(), environment=environment(), parameters=parameters("material", run.material),
+        dt=1 / run.steps, parameters=parameters("material", run.material), **stopwatch.told(),
     )  # fmt: skip
     return result, {f"{name}/{key}": values for name, curve in curves.items() for key, values in curve.items()}
 

@@ -1,15 +1,13 @@
 """One run of the wave bar: set up, struck, and its frequency measured."""
 
-import time
 from collections.abc import Callable
 from math import ceil, pi
 from typing import Any
 
 import numpy as np
 
-from mpm_verify.cases.harness.environment import environment
-from mpm_verify.cases.harness.memory import forget_peak, peak_memory
 from mpm_verify.cases.harness.progress import Progress
+from mpm_verify.cases.harness.stopwatch import Stopwatch
 from mpm_verify.cases.harness.study import Arrays, parameters
 from mpm_verify.cases.wave_bar.run import Result, Run
 from mpm_verify.solver.boundary import box
@@ -52,12 +50,12 @@ class Amplitude(Observer):
 
 def execute(run: Run, tick: Callable[[float], None] = lambda fraction: None) -> tuple[Result, Arrays]:
     """Run to the end, or to where it cannot go on: a failed run is a Result. Arrays: t and the modal amplitude q."""
-    forget_peak()
+    stopwatch = Stopwatch()
     model, omega, steps = setup(run)
     mode = Amplitude()
     model.watch(mode, Progress(tick, steps))
     failure: Failure | None = None
-    started, used = time.perf_counter(), time.process_time()
+    stopwatch.start()
     try:
         check_time_step(model)
         for _ in range(steps):
@@ -78,13 +76,10 @@ def execute(run: Run, tick: Callable[[float], None] = lambda fraction: None) -> 
         steps=model.steps,
         particles=len(model.particles),
         dt=model.dt,
-        wall_s=time.perf_counter() - started,
-        cpu_s=time.process_time() - used,
         crossings=model.crossings,
-        peak_memory_mb=peak_memory(),
         failure=failure,
-        environment=environment(),
         parameters=parameters("material", model.material) | parameters("method", model.basis),
+        **stopwatch.told(),
     )
     return result, {"t": t, "q": q}
 
