@@ -186,6 +186,11 @@ def optional(package: str, specification: str) -> Any:
     return None if specification == "none" else create(package, specification)
 
 
+def canonical_optional(package: str, specification: str) -> str:
+    """One name for one thing, as `canonical`, or ``none``. Raises as `canonical`."""
+    return specification if specification == "none" else canonical(package, specification)
+
+
 def create(package: str, specification: str) -> Any:
     """Make a plug-in with its parameters.
 

@@ -25,6 +25,7 @@ from mpm_verify.solver.plugins import (
     SMOOTHINGS,
     TRANSFERS,
     available,
+    canonical_optional,
     create,
     label,
     split,
@@ -72,8 +73,7 @@ def canonical(values: dict[str, Any]) -> dict[str, Any]:
     values["material"] = completed(values.get("material") or problem.material, problem.constants)
     for key, package in {"method": METHODS, "transfer": TRANSFERS}.items():
         values[key] = canonical_name(package, values.get(key, getattr(Run, key)))
-    smoothing = values.get("smoothing", Run.smoothing)
-    values["smoothing"] = smoothing if smoothing == "none" else canonical_name(SMOOTHINGS, smoothing)
+    values["smoothing"] = canonical_optional(SMOOTHINGS, values.get("smoothing", Run.smoothing))
     return values
 
 

@@ -21,7 +21,7 @@ from mpm_verify.cases.box.run import LOW, QUICK, ROWS, Result, Run
 from mpm_verify.cases.harness.checks import Check, Unjudged, Way
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.cases.harness.study import Study
-from mpm_verify.solver.plugins import MATERIALS, METHODS, SMOOTHINGS, TRANSFERS, create, label
+from mpm_verify.solver.plugins import MATERIALS, METHODS, SMOOTHINGS, TRANSFERS, canonical_optional, create, label
 from mpm_verify.solver.plugins import canonical as canonical_name
 
 __all__ = ["QUICK", "Result", "Run"]
@@ -48,8 +48,7 @@ def canonical(values: dict[str, Any]) -> dict[str, Any]:
     """Specifications with only the parameters that differ from their defaults."""
     for key, package in {"method": METHODS, "material": MATERIALS, "transfer": TRANSFERS}.items():
         values[key] = canonical_name(package, values.get(key, getattr(Run, key)))
-    smoothing = values.get("smoothing", Run.smoothing)
-    values["smoothing"] = smoothing if smoothing == "none" else canonical_name(SMOOTHINGS, smoothing)
+    values["smoothing"] = canonical_optional(SMOOTHINGS, values.get("smoothing", Run.smoothing))
     return values
 
 

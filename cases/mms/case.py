@@ -32,6 +32,7 @@ from mpm_verify.solver.plugins import (
     SOLUTIONS,
     TRANSFERS,
     available,
+    canonical_optional,
     create,
     is_file,
     label,
@@ -83,8 +84,7 @@ def canonical(values: dict[str, Any]) -> dict[str, Any]:
     values["material"] = canonical_name(MATERIALS, values.get("material") or create(SOLUTIONS, solution).material)
     values["transfer"] = canonical_name(TRANSFERS, values.get("transfer", Run.transfer))
     values["layout"] = canonical_name(LAYOUTS, values.get("layout", Run.layout))
-    smoothing = values.get("smoothing", Run.smoothing)
-    values["smoothing"] = smoothing if smoothing == "none" else canonical_name(SMOOTHINGS, smoothing)
+    values["smoothing"] = canonical_optional(SMOOTHINGS, values.get("smoothing", Run.smoothing))
     if values.get("columns"):
         values["columns"] = column_map.read(values["columns"])
     if values.get("solver"):
