@@ -211,7 +211,7 @@ def test_a_limit_is_held_and_not_the_finest_value() -> None:
 
 @pytest.mark.slow
 def test_a_block_that_slides_has_the_limit_of_an_elastic_one() -> None:
-    """Its excess goes with the time that a wave takes: half of it is left with four times E, none of a rigid block."""
+    """Half of its excess, which goes with the time of a wave, is left with four times E, none of a rigid block."""
 
     def limit(problem: str) -> float:
         found = [ran(problem, method="cpdi", cells=cells).values["travel"] for cells in (16, 8, 4)]
@@ -385,7 +385,7 @@ PURE = {
 
 
 def test_an_exported_benchmark_says_what_is_not_judged_here() -> None:
-    """With the code of its reason, as the checks here have it, and in words."""
+    """Codes of the reasons are those of the checks here, and the words say them."""
     usual = exported("rankine", None, 16, None, 0.4)
     steep = exported("rankine", "mohr_coulomb:phi=50", 16, None, 0.4)
     for made, why in ((usual, ""), (steep, "not_usual")):

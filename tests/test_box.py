@@ -52,7 +52,7 @@ def test_sand_in_the_stress_of_its_weight_is_right_to_round_off(run: Run) -> Non
 
 
 def test_a_few_that_carry_all_are_seen_and_their_sums_are_right() -> None:
-    """Of each column of particles of a row of cells one carries what all three should: the sums say nothing of it."""
+    """One of three particles above one another carries what all three should: the sums say nothing of it."""
     state = at_rest()
     side = 3
     sigma = state["sigma"].reshape(-1, side, 4)  # three particles above one another in one cell

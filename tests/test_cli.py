@@ -487,7 +487,7 @@ def numeric() -> list[tuple[str, str]]:
 
 
 def test_a_number_that_cannot_be_read_is_told_plainly(verify: Verify) -> None:
-    """Of every option that the parser itself reads; not in the words of the library that reads it."""
+    """Every option that the parser itself reads is told in our words, not in those of the library."""
     found = numeric()
     assert {("judge", "--order"), ("export", "--cells"), ("mms", "--threads"), ("power", "--seed")} <= set(found)
     for command, option in found:

@@ -339,7 +339,7 @@ def workers(client: Any) -> dict[str, int]:
 
 @pytest.mark.slow
 def test_a_run_whose_worker_is_killed_goes_on_elsewhere(local: Any, tmp_path: Path) -> None:
-    """From the checkpoint of the first worker, as both see the folder; with the bits of a run that nobody killed."""
+    """The second worker begins at the checkpoint of the first, and has the bits of a run that nobody killed."""
     study = column(duration=[0.03])
     (run,) = study.runs
     with connected(local.scheduler_address) as away:
