@@ -14,7 +14,7 @@ from typing import Any, cast
 import pytest
 
 from mpm_verify.cases.detect import certificate
-from mpm_verify.cases.detect.defect import NONE, Defect, defects, replaced
+from mpm_verify.cases.detect.defect import KINDS, MAKERS, NONE, Defect, defects, replaced
 from mpm_verify.cases.detect.mutate import files, mutant, mutants, sampled
 from mpm_verify.cases.detect.plant import Planted
 from mpm_verify.cases.detect.rates import Row, alone, rate, rates, redundant
@@ -40,7 +40,12 @@ def test_a_defect_can_be_planted(one: Defect) -> None:
     planted = replaced(text, one)
     compile(planted, one.file, "exec")
     assert planted != text
-    assert one.by
+
+
+def test_kinds_and_makers_have_names_of_their_own() -> None:
+    """A rate of one would be told as that of the other: one of 46 in the judge was, as 1 of 1."""
+    assert not set(KINDS) & set(MAKERS)
+    assert {one.by for one in defects().values() if one.name != NONE} <= set(MAKERS)
 
 
 def test_there_are_enough_defects() -> None:
@@ -131,6 +136,24 @@ def test_the_certificate_is_quoted_with_what_was_missed() -> None:
     assert "0 of 20 placebos" in text
     assert "2026-01-02" in text
     assert "earlier state" in text
+
+
+def test_the_document_has_the_numbers_of_the_certificate() -> None:
+    kept = certificate.stored()
+    assert kept is not None
+    text = " ".join((TOP.parent / "docs" / "detect.md").read_text().split())
+    noticed = f"{kept.copies} copies on an Intel Xeon: {kept.noticed} of {kept.planted} mistakes were noticed"
+    assert f"{noticed} ({100 * kept.noticed / kept.planted:.0f} %" in text
+    assert f"{kept.failed} of them with a FAIL, and none of {kept.placebos} placebos" in text
+    assert kept.alarms == 0
+    for name, words in {
+        "order": "Of the mistakes in order", "listed": "of the listed ones", "not listed": "of the others",
+        "judge": "of the judge", "mms --quick and exact": "`verify mms --quick` and `verify exact` alone noticed",
+    }.items():  # fmt: skip
+        k, n = (int(number) for number in kept.kinds[name][:2])
+        assert f"{words} {k} of {n} ({100 * k / n:.0f} %)" in text
+    missed = text.partition("| mistake | why |")[2].partition("Of 16 mutants")[0]
+    assert {word.strip("`") for word in missed.split() if word.startswith("`")} == set(kept.missed)
 
 
 def test_known_answers_are_given_and_each_part_can_fail(monkeypatch: pytest.MonkeyPatch) -> None:

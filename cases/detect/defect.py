@@ -14,6 +14,7 @@ from pathlib import Path
 
 FOLDER = Path(__file__).with_name("defects")
 KINDS = ("order", "robustness", "judge", "placebo")
+MAKERS = ("port", "formula", "index", "refactoring", "constant", "time", "physics")
 NONE = "none"  # the sound package
 BASES = "solver/basis/"
 HIDDEN = ("_cpdi_limited.py", "_gimp.py", "_parallelogram.py", "_splines.py")
@@ -34,7 +35,7 @@ class Defect:
     kind
         One of KINDS.
     by
-        Who would make it: `port`, `formula`, `index`, `refactoring`, `constant`, `time`, `physics`, `data`, `judge`.
+        Who would make it: one of MAKERS, none of which is a kind, as rates have the names of both.
     listed
         Whether it stands in a list that was there before the checks were chosen.
     methods
@@ -62,8 +63,11 @@ def defects() -> Mapping[str, Defect]:
     for table in sorted(FOLDER.glob("*.toml")):
         for row in tomllib.loads(table.read_text(encoding="utf-8"))["defect"]:
             one = Defect(**{**row, "methods": tuple(row.get("methods", ()))})
-            if one.name in found or one.kind not in KINDS or one.old == one.new:
-                raise ValueError(f"{table.name}: {one.name} stands there twice, has no such kind, or changes nothing")
+            known = one.kind in KINDS and one.by in MAKERS
+            if one.name in found or not known or one.old == one.new:
+                raise ValueError(
+                    f"{table.name}: {one.name} stands there twice, has no such kind or maker, or changes nothing"
+                )
             found[one.name] = one
     return found
 
