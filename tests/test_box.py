@@ -231,6 +231,27 @@ def test_without_pooling_the_sums_are_right_and_single_particles_are_not() -> No
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("pooled", [False, True])
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_the_document_has_the_numbers_of_its_seeds(seed: int, pooled: bool) -> None:
+    """Each cell of the table of three seeds in docs/column.md, to its digits."""
+    v = execute(replace(RUN, seed=seed, pooling=pooled))[0].values
+    text = (Path(__file__).parent.parent / "docs" / "column.md").read_text().partition("| seeds 1, 2, 3 |")[2]
+    told = {cells[1].strip(): cells[2 + pooled].strip() for line in text.splitlines()[1:8]
+            if len(cells := line.split("|")) > 3}  # fmt: skip
+    for name, found in {
+        "particles without stress": 100 * v["free"], "K below two thirds": v["K_low"], "top": v["top"],
+        "largest σ_yy": v["largest"],
+    }.items():  # fmt: skip
+        cell = told[name].removesuffix(" %").split(", ")[seed - 1]
+        assert f"{found:.{len(cell.partition('.')[2])}f}" == cell, name
+    for k in range(1, 8):
+        top = k == 7 and not pooled
+        low, high = (1.11, 1.14) if top else (0.98, 1.02)
+        assert low <= round(v[f"weight_{k}"], 2) <= high
+
+
+@pytest.mark.slow
 def test_the_quick_box_passes_with_pooling(verify: Call) -> None:
     assert verify("box", "--pooling", "--quick")[0] == 0
 
