@@ -11,6 +11,9 @@ None of these knows the energies of the particles, so that
     kinetic + potential + work + damping - walls + transfer + convection - half_step = constant, to round-off
 can fail: in kinetic energy, position and damping against the forces, not in the work of the stress, which convection is
 held against. With other transfers than FLIP what they blend is a loss too, known as the gain of the particles alone.
+A transfer that filters velocities moves particles with others than u: those are u above but in walls, and transfer has
+dt/2 f . (filtered - u) too. Its filter leaves w at a node that a wall holds in each step, which no wall has met: there
+walls has the velocity that particles moved with last instead of w, and the rest is transfer.
 The work of the stress is the mean of that of the stress at the start and at the end of a step.
 Transfer and convection are what the method loses, and no energy of the material. Sums are no matrix products: threads
 of BLAS wait for the next one at full speed, and take the core from another run.
@@ -44,18 +47,20 @@ def between_steps(mass, momentum_force, after, undamped, g, dt, cutoff, sums):
                 sums[HALF_STEP] += 0.5 * dt * mass[i] * g[a] * after[i, a]
 
 
-@kernel(nothing(F1, F2, F2, F2, F2, flag[:, ::1], F1, f8, f8, F1))
-def in_step(mass, momentum_force, velocity_acceleration, undamped, after, held, g, dt, cutoff, sums):
-    """Add up what the step does on the grid; write the kinetic energy after it to ON_GRID, and u to `after`."""
+@kernel(nothing(F1, F2, F2, F2, F2, flag[:, ::1], f8, F1, f8, f8, F1))
+def in_step(mass, momentum_force, velocity_acceleration, undamped, after, held, kept, g, dt, cutoff, sums):
+    """Add up what the step does on the grid; write the kinetic energy after it to ON_GRID, and u to `after`.
+
+    `kept`: fraction of w in the velocity that a wall meets, 1 or 0, the rest is that of the last step.
+    """
     sums[ON_GRID] = 0.0
     for i in range(mass.shape[0]):
-        for a in range(2):
-            after[i, a] = velocity_acceleration[i, a]
         if mass[i] > cutoff:
             for a in range(2):
                 u = velocity_acceleration[i, a]
                 change = dt * velocity_acceleration[i, 2 + a]
-                mean = 0.5 * (momentum_force[i, a] / mass[i] + u)
+                w = momentum_force[i, a] / mass[i]
+                mean = 0.5 * (w + u)
                 impulse = dt * (mass[i] * velocity_acceleration[i, 2 + a] - momentum_force[i, 2 + a])
                 sums[ON_GRID] += 0.5 * mass[i] * u * u
                 sums[TRANSFER] += 0.5 * mass[i] * change * change
@@ -64,8 +69,28 @@ def in_step(mass, momentum_force, velocity_acceleration, undamped, after, held, 
                 sums[HALF_STEP] -= 0.5 * dt * mass[i] * g[a] * u
                 sums[IMPULSE + a] += dt * (momentum_force[i, 2 + a] - undamped[i, a])
                 if held[i, a]:
-                    sums[WALLS] += impulse * mean
+                    sums[WALLS] += impulse * (mean + 0.5 * (1.0 - kept) * (after[i, a] - w))
                     sums[IMPULSE + a] += impulse
+        for a in range(2):
+            after[i, a] = velocity_acceleration[i, a]
+
+
+@kernel(nothing(F1, F2, F2, F2, F1, f8, f8, F1))
+def in_filter(mass, velocity_acceleration, undamped, after, g, dt, cutoff, sums):
+    """Add up what a filter does to the velocities behind `in_step`, which are in `after`; write those of now there."""
+    sums[ON_GRID] = 0.0
+    for i in range(mass.shape[0]):
+        if mass[i] > cutoff:
+            for a in range(2):
+                moved = velocity_acceleration[i, a]
+                more = moved - after[i, a]
+                sums[ON_GRID] += 0.5 * mass[i] * moved * moved
+                sums[LATE] += 0.5 * dt * undamped[i, a] * more
+                sums[CONVECTION] += 0.5 * dt * (undamped[i, a] - mass[i] * g[a]) * more
+                sums[HALF_STEP] -= 0.5 * dt * mass[i] * g[a] * more
+                sums[IMPULSE + a] += mass[i] * more
+        for a in range(2):
+            after[i, a] = velocity_acceleration[i, a]
 
 
 def lumped(grid: Grid, cutoff: float) -> Floats:
@@ -133,20 +158,23 @@ class Budget(Observer):
         g = model.grid
         in_step(
             g.mass, g.momentum_force, g.velocity_acceleration, self.undamped, self.after, model.walls.held,
-            self.gravity, model.dt,
+            0.0 if model.scheme.transfer.filters_walls else 1.0, self.gravity, model.dt,
             model.cutoff, self.sums,
         )  # fmt: skip
         self.v = model.particles.v.copy()
 
     def after_particles(self, model: Model) -> None:
-        """Take off what the particles took of the step."""
-        p = model.particles
+        """Add what a filter does to the velocities, and take off what the particles took of the step."""
+        g, p = model.grid, model.particles
+        if model.scheme.transfer.filters_walls:
+            in_filter(
+                g.mass, g.velocity_acceleration, self.undamped, self.after, self.gravity, model.dt, model.cutoff,
+                self.sums,
+            )  # fmt: skip
         self.sums[TRANSFER] -= kicked(p.m, self.v, p.v)
 
     def terms(self, model: Model) -> dict[str, float]:
         """Energies after a step.
-
-        With a transfer that filters velocities positions do not move with those of the nodes, and the sum drifts.
 
         Returns
         -------

@@ -166,7 +166,7 @@ def budget(subject: Subject, variant: Variant) -> list[Tested]:
         found.append(not_asked(names[1], Part.FRICTION, Reason.BUDGET))
     else:
         found.append(Tested(names[1], off(given[0], -MU * given[1], scale), most, Part.FRICTION))
-    if subject.material.rate is None or variant.stress != "usl" or variant.scheme.transfer.filters_walls:
+    if subject.material.rate is None or variant.stress != "usl":
         reason = Reason.NO_RATE_FORM if subject.material.rate is None else Reason.BUDGET
         return [*found, not_asked(names[0], Part.FRICTION, reason)]
     energy = max(map(abs, rows[0].values()))

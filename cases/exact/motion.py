@@ -46,8 +46,8 @@ def tests(subject: Subject) -> list[Tested]:
 
 def budget(subject: Subject, variant: Variant) -> Tested:
     """Energies of a body between walls, struck, under gravity and damped: their sum over the kinetic energy."""
-    name, rate, transfer = f"budget {variant}", subject.material.rate, variant.scheme.transfer
-    if rate is None or variant.stress != "usl" or transfer.filters_walls:
+    name, rate = f"budget {variant}", subject.material.rate
+    if rate is None or variant.stress != "usl":
         return not_asked(name, Part.BUDGET, Reason.NO_RATE_FORM if rate is None else Reason.BUDGET)
     p = populated(subject, layout(filled=True), np.eye(2))
     p.v[:] = 0.02 * subject.speed * random(len(p), 2)

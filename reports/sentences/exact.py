@@ -132,7 +132,7 @@ REASONS = {
     Reason.NO_SUMS: "the material keeps no such sum, or its moduli change on the way",
     Reason.OWN_AXES: "the material tells its own axes apart",
     Reason.FILTER: "through nodes and back is a filter, and no projector",
-    Reason.BUDGET: "the budget is that of update-stress-last and of positions that move with the nodes",
+    Reason.BUDGET: "the budget is that of update-stress-last; what a wall gives behind a filter is told by no node",
     Reason.POINTS: "forces on the edge act through points, which balance no stress exactly",
     Reason.REFERENCE: "weights are those of the reference positions, which no particle leaves",
     Reason.OTHER_RATE: "smoothing does not take this rate",
