@@ -439,3 +439,49 @@ def test_defaults_are_those_of_the_column() -> None:
     assert law.memory == ("gamma_p", "eps_v_p", "void")
     assert planes(law)[0].shape == (9, 3)
     assert law.wave_speed() == pytest.approx(20.657, abs=1e-3)
+
+
+# ---- dilation that ends
+
+
+def test_dilation_ends_at_its_plastic_shear() -> None:
+    """Shear of constant volume: bits of psi without an end until then, then none; gamma_cv (m - 1)/(m + 1) in all."""
+    usual, ending = MohrCoulomb(psi=10.0), MohrCoulomb(psi=10.0, gamma_cv=0.02)
+    m, steps = 1 / tan(radians(40.0)) ** 2, 2000
+    paths = {}
+    for one in (usual, ending):
+        sigma, history, rows = np.array([-5e3, -5e3, -5e3, 0.0]), np.zeros(3), []
+        for _ in range(steps):
+            de = np.array([1.0, -1.0, 0.0]) * 2e-5
+            one.respond(one.constants(), sigma, de, history)
+            rows.append([*sigma, *history])
+        paths[one] = np.array(rows)
+    first, last = paths[usual], paths[ending]
+    before = first[:, 4] < 0.02
+    at = int(before.sum()) + 1  # the step that reaches it flows as before
+    assert 0 < at < steps / 2
+    assert first[:at].tobytes() == last[:at].tobytes()
+    assert np.ptp(last[at:, 5]) < 1e-14
+    assert last[-1, 4] > 0.03
+    assert last[-1, 5] == pytest.approx((m - 1) / (m + 1) * 0.02, abs=(m - 1) / (m + 1) * 5e-5)
+    assert np.ptp(first[at:, 5]) > 1e-3  # without an end it goes on
+
+
+def test_after_its_end_it_is_psi_zero() -> None:
+    """Random trial stresses: bits of psi = 0 from gamma_cv on, those of psi below it."""
+    trial, none = random_trials(200), MohrCoulomb(psi=0.0)
+    usual, ending = MohrCoulomb(psi=10.0), MohrCoulomb(psi=10.0, gamma_cv=0.1)
+    for slipped, like in ((0.1, none), (0.3, none), (0.0999, usual)):
+        both = []
+        for one in (ending, like):
+            sigma = np.column_stack([trial, np.zeros(len(trial))]).ravel()
+            history = np.tile([slipped, 0.0, 0.0], len(trial))
+            one.respond(one.constants(), sigma, np.zeros(3 * len(trial)), history)
+            both.append((sigma.tobytes(), history.tobytes()))
+        assert both[0] == both[1]
+
+
+@pytest.mark.parametrize("value", [0.0, -1.0, nan])
+def test_an_end_before_the_start_is_refused(value: float) -> None:
+    with pytest.raises(ValueError, match="psi=0 is what does not dilate at all"):
+        MohrCoulomb(gamma_cv=value)

@@ -148,16 +148,20 @@ def vertical(material: Ubcsand, stress: float, eta: float) -> float:
 
 
 def perfect(material: MohrCoulomb, test: ElementTest, begun: State) -> tuple[Columns, str] | None:
-    """Curve of Mohr-Coulomb: elastic where it does not yield, biaxial and triaxial tests on both sides of yield."""
-    if test.name in TRIAXIAL_TESTS:
-        return triaxial(material, test, begun)
-    stress = -float(begun.sigma[0])
+    """Curve of Mohr-Coulomb: elastic where it does not yield, biaxial and triaxial tests on both sides of yield.
+
+    None of a test in which dilation may end: the step that it ends in has the old flow.
+    """
     k, m = slope(material.phi), slope(material.psi)
+    bends = (1 + m) * test.length > material.gamma_cv  # the largest plastic shear of a unit along an axis is 1 + m
+    if test.name in TRIAXIAL_TESTS:
+        return None if bends else triaxial(material, test, begun)
+    stress = -float(begun.sigma[0])
     K0 = material.nu / (1 - material.nu)
     least = {"isotropic": 2 * material.nu, "oedometric": K0}  # of the elastic principal stresses, over the largest
     if least.get(test.name, 0.0) * k >= 1:
         return elastic(material, test, begun), ELASTIC
-    if test.name != "biaxial":
+    if test.name != "biaxial" or bends:
         return None
     strong = k * stress + 2 * material.c * np.sqrt(k)
     ends = (strong - stress) * (1 - material.nu**2) / material.E

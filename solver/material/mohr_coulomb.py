@@ -13,6 +13,10 @@ then the return to the apex is a projection, and the plastic strain is what the 
 
 With phi = 0 it is Tresca's material, k = 1: s1 - s3 <= 2 c at any pressure. There is no apex, nothing dilates, and the
 cut-off is at sigma_t itself, however high.
+
+Dilation may end, as that of sand does at its critical volume: where gamma_p has reached gamma_cv at the start of a
+step, psi is 0. This is **our own reading**, a step where sand has a curve; the paper's psi has no end, and the volume
+that it makes grows with the shear.
 """
 
 from dataclasses import dataclass
@@ -74,6 +78,7 @@ def respond(constants, sigma, de, history):
     Two loops: the first has no branches and vectorises, roots included, which makes the whole faster by a half.
     """
     shear, k, cohesive, tension = constants[1], constants[2], constants[3], constants[4]
+    gamma_cv, ended = constants[19], constants[20:]
     plane = np.empty(3 * (sigma.shape[0] // 4))
     for b in range(sigma.shape[0] // 4):
         if history[3 * b + 2] != 0.0:
@@ -85,7 +90,7 @@ def respond(constants, sigma, de, history):
         f = k * t1 - t3 - cohesive
         if not (f <= 0.0 and t1 <= tension):
             xx, yy, xy = sigma[4 * b], sigma[4 * b + 1], sigma[4 * b + 3]
-            s1, s2, s3 = returned(t1, t2, t3, f, constants)
+            s1, s2, s3 = returned(t1, t2, t3, f, ended if history[3 * b] >= gamma_cv else constants)
             opens = constants[18] > 0.0 and s3 >= tension
             history[3 * b] += (t1 - s1 - t3 + s3) / shear
             history[3 * b + (2 if opens else 1)] += (t1 - s1 + t2 - s2 + t3 - s3) * constants[17]
@@ -123,6 +128,8 @@ class MohrCoulomb(RateMaterial, Elastic):
         Tension cut-off in the unit of E, zero or more; far above the cohesion it has no effect.
     void
         1 with void-strain memory (solver/voids.py), which needs c = 0.
+    gamma_cv
+        Plastic shear gamma_p, above zero, from which on psi is 0; inf where dilation has no end.
 
     Raises
     ------
@@ -142,6 +149,7 @@ class MohrCoulomb(RateMaterial, Elastic):
     c: float = 0.0
     sigma_t: float = 0.0
     void: float = 0.0
+    gamma_cv: float = inf
     memory: ClassVar[tuple[str, ...]] = ("gamma_p", "eps_v_p", "void")
     sums: ClassVar[tuple[str, ...]] = ("gamma_p", "eps_v_p")
     order: ClassVar[float | None] = 1.0
@@ -157,6 +165,10 @@ class MohrCoulomb(RateMaterial, Elastic):
         check_void(self.void, self.c)
         if not 0 <= self.sigma_t < inf:
             raise ValueError(f"sigma_t = {self.sigma_t} must be zero or more, and finite")
+        if not self.gamma_cv > 0:
+            raise ValueError(f"gamma_cv = {self.gamma_cv} must be above zero; psi=0 is what does not dilate at all")
+        if self.gamma_cv < inf:  # what follows depends on the sum
+            object.__setattr__(self, "sums", ())
 
     @property
     def friction_angle(self) -> float:
@@ -180,8 +192,12 @@ class MohrCoulomb(RateMaterial, Elastic):
         return linear(self)
 
     def constants(self) -> Floats:
+        """Constants (39,): 19 of `weights` with psi, gamma_cv, and the 19 of psi = 0."""
+        return np.concatenate([self.weights(self.psi), [self.gamma_cv], self.weights(0.0)])
+
+    def weights(self, psi: float) -> Floats:
         """Constants (19,): lam, 2 mu, strength, and the weights of trial stresses in the return to each region."""
-        nu, k, m = self.nu, slope(self.phi), slope(self.psi)
+        nu, k, m = self.nu, slope(self.phi), slope(psi)
         cohesive = 2 * self.c * sqrt(k)
         tension, apex = min(self.sigma_t, apex_of(self.phi, self.c)), apex_of(self.phi, self.c)
         low = k * tension - cohesive if tension < apex else tension  # s3 where plane and cut-off meet
