@@ -88,12 +88,13 @@ def at_failure(material: Any, slipped: float) -> Any:
 
 def davis(material: Any) -> list[Check]:
     """Checks of simple shear at failure, under constant vertical stress: stress ratio and dilation, where known."""
-    if davis_ratio(material) is None:
+    ratio = davis_ratio(material)
+    if ratio is None:
         return []
     stress = 1e-6 * material.E  # far below the stiffness: then the last bit of elastic strain is gone soon
     found = run(material, "shear_stress", 0.1, stress, 400)
     material = at_failure(material, found.history[-40, 0])
-    ratio = davis_ratio(material)
+    ratio = davis_ratio(material) or ratio
     before, after = columns(TESTS["shear_stress"], replace(found)), found.strain
     grown = (after[-1, 1] - after[-40, 1]) / (2 * (after[-1, 2] - after[-40, 2]))
     group = "Simple shear at failure"
