@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from mpm_verify.cases.column.aspect import Line, lines
 from mpm_verify.cases.column.checks import checks
 from mpm_verify.cases.column.claims import CROWDED, Claim, FinishedRun, claims
 from mpm_verify.cases.column.experiment import experiment
@@ -40,6 +41,7 @@ class ColumnAnalysis:
     claims: tuple[Claim, ...]
     refined: tuple[Refined, ...]
     scattered: tuple[Scattered, ...]
+    lines: tuple[Line, ...]
     examination: Examination
 
     @property
@@ -60,7 +62,7 @@ def examine(study: ColumnStudy, results: Mapping[str, ColumnResult], store: Stor
         tuple(checks(study, ran)), parameters(study, first), {}, first.environment if first else {},
     )  # fmt: skip
     refined, scattered = tuple(refinements(ran, study.axes)), tuple(scatter(ran, study.axes))
-    return ColumnAnalysis(study, results, ran, said, refined, scattered, examination)
+    return ColumnAnalysis(study, results, ran, said, refined, scattered, tuple(lines(ran, study.axes)), examination)
 
 
 def curves(store: Store, result: ColumnResult) -> dict[str, Any]:

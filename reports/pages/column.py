@@ -13,6 +13,7 @@ from mpm_verify.reports.components.show import Table
 from mpm_verify.reports.export.column_files import files, tables
 from mpm_verify.reports.figures import column as draw
 from mpm_verify.reports.frames import Record
+from mpm_verify.reports.pages._column_aspect import aspects
 from mpm_verify.reports.pages._column_more import alive, books, films, refinement, set_up
 from mpm_verify.reports.sentences import column as words
 from mpm_verify.reports.sentences import failures
@@ -40,6 +41,8 @@ def sections(analysis: ColumnAnalysis, store: Store, add: Add) -> Sequence[Secti
     if drawn := [one for one in analysis.ran if one.curves]:
         labels = [words.label(analysis.study, one.run) for one in drawn]
         found += [motion(drawn, labels, add), energy(drawn, labels, add), budget(drawn, labels, add)]
+    if analysis.lines:
+        found.append(aspects(analysis.lines, add))
     if analysis.refined or analysis.scattered:
         found.append(refinement(analysis, add))
     kept = [
