@@ -1,4 +1,4 @@
-"""Run-out against aspect: the law's forms by their quoted numbers, which runs make a line, figure and table."""
+"""Run-out against aspect: forms of the scaling by their quoted numbers, which runs make a line, figure and table."""
 
 import json
 from pathlib import Path
@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from fixtures_command import process
 
-from mpm_verify.cases.column.aspect import ENOUGH, law, lines
+from mpm_verify.cases.column.aspect import ENOUGH, lines, scaling
 from mpm_verify.cases.column.claims import FinishedRun
 from mpm_verify.cases.column.run import ColumnRun
 from mpm_verify.reports.figures.aspect import run_out
@@ -24,8 +24,8 @@ def ended(front: float = 0.5, **chosen: Any) -> FinishedRun:
     [(0.5, 0.6, 0.8), (1.0, 1.2, 1.6), (2.0, 2.4, 3.492), (4.0, 4.788, 5.544), (7.0, 6.953, 8.050)],
 )
 def test_band_holds_all_that_the_law_is_quoted_as(aspect: float, low: float, high: float) -> None:
-    """Numbers of the table of quoted forms; both laws where one goes over into the other."""
-    assert law(aspect) == pytest.approx((low, high), rel=1e-3)
+    """Numbers of the table of quoted forms; both scalings where one goes over into the other."""
+    assert scaling(aspect) == pytest.approx((low, high), rel=1e-3)
 
 
 def test_a_line_has_runs_that_differ_in_aspect_and_in_cells() -> None:

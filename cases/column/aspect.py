@@ -1,6 +1,6 @@
-"""Run-out against the aspect ratio a = h0/d0 of columns, and the laws of experiments in channels.
+"""Run-out against the aspect ratio a = h0/d0 of columns, and the scaling of experiments in channels.
 
-Texts quote the law of Lube, Huppert, Sparks & Freundt 2005 (doi:10.1103/PhysRevE.72.041301) in two forms of the run-out
+Texts quote that of Lube, Huppert, Sparks & Freundt 2005 (doi:10.1103/PhysRevE.72.041301) in two forms of the run-out
 (d - d0)/d0: 1.2 a and 1.9 a^(2/3), and 1.6 a and 2.2 a^(2/3), of squat and of tall columns; they change between a = 1.8
 and 2.8. No primary text was at hand, see cases/column/experiment.py.
 """
@@ -13,7 +13,7 @@ from mpm_verify.cases.column.claims import FinishedRun, values
 from mpm_verify.cases.column.experiment import Band
 
 FACTORS = ((1.2, 1.9), (1.6, 2.2))  # of a, and of a^(2/3), in each form
-BETWEEN = (1.8, 2.8)  # aspects at which one law goes over into the other
+BETWEEN = (1.8, 2.8)  # aspects at which one scaling goes over into the other
 ENOUGH = 24  # cells of the height: with fewer a squat column falls short
 
 
@@ -35,8 +35,8 @@ class Line:
     points: tuple[Point, ...]
 
 
-def law(aspect: float) -> Band:
-    """Least and largest run-out over the width that the forms of the law give for an aspect."""
+def scaling(aspect: float) -> Band:
+    """Least and largest run-out over the width that the forms of the scaling give for an aspect."""
     squat = [linear * aspect for linear, _ in FACTORS] if aspect <= BETWEEN[1] else []
     tall = [power * aspect ** (2 / 3) for _, power in FACTORS] if aspect >= BETWEEN[0] else []
     return min(squat + tall), max(squat + tall)

@@ -1,4 +1,4 @@
-"""Figure of the run-out against the aspect ratio, both logarithmic, with the laws of the experiment."""
+"""Figure of the run-out against the aspect ratio, both logarithmic, with the scalings of the experiment."""
 
 from collections.abc import Sequence
 
@@ -7,7 +7,7 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
-from mpm_verify.cases.column.aspect import BETWEEN, FACTORS, Line, law
+from mpm_verify.cases.column.aspect import BETWEEN, FACTORS, Line, scaling
 from mpm_verify.reports.figures import style
 from mpm_verify.reports.figures.column import SAND, SIZE, legend
 
@@ -16,7 +16,7 @@ POINTS = 200
 
 
 def run_out(lines: Sequence[Line], labels: Sequence[str]) -> Figure:
-    """Run-out over the width against height over width, in a band between the forms of the law.
+    """Run-out over the width against height over width, in a band between the forms of the scaling.
 
     Parameters
     ----------
@@ -28,7 +28,7 @@ def run_out(lines: Sequence[Line], labels: Sequence[str]) -> Figure:
     aspects = [point.aspect for line in lines for point in line.points]
     found = [point.run_out for line in lines for point in line.points]
     a = np.geomspace(min(aspects) / 1.2, max(aspects) * 1.2, POINTS)
-    bands = np.array([law(float(one)) for one in a])
+    bands = np.array([scaling(float(one)) for one in a])
     with rc_context(style.RC):
         figure, axes = style.panel(SIZE, xscale="log", yscale="log", xlabel="height / width of the column",
                                    ylabel="(front at rest − width) / width")  # fmt: skip
