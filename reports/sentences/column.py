@@ -27,7 +27,8 @@ BOOKS = (
 ASPECTS = (
     "Run-out is the distance by which the front, 99 % of the mass, comes beyond the column's free side, over its "
     "width. The scaling of the experiment is quoted in two forms, and its change from squat to tall columns between "
-    "1.8 and 2.8; the band holds all that they give. With fewer than {few} cells of the height a squat column falls short."
+    "1.8 and 2.8; the band holds all that they give. With fewer than {few} cells of the "
+    "height a squat column falls short."
 )
 ANSWERS = {True: "reproduced", False: "not reproduced", None: "cannot be told"}
 
