@@ -3,7 +3,7 @@
 PYTHON ?= python3
 BIN = .venv/bin
 
-.PHONY: mms test slow bench recorded adapters lock clean
+.PHONY: mms test slow bench docs recorded adapters lock clean
 
 mms: .venv/.installed
 	$(BIN)/verify mms --method cpdi
@@ -16,6 +16,10 @@ test: .venv/.installed
 
 slow: .venv/.installed
 	$(BIN)/pytest -m slow -n auto --dist loadscope
+
+# The documentation as a site, results/site/index.html.
+docs: .venv/.installed
+	$(BIN)/mkdocs build --quiet
 
 # Errors that later runs are held against; a change of a row is a change of the numbers.
 recorded: .venv/.installed
