@@ -39,8 +39,10 @@ def test_every_document_is_a_page(site: Path) -> None:
 def test_every_page_is_led_to(site: Path) -> None:
     """Each page stands in the menu of the first."""
     text = (site / "index.html").read_text(encoding="utf-8")
-    assert not {file.name for file in site.glob("*.html")} - {"404.html", "index.html"} - set(
-        re.findall(r'href="([\w-]+\.html)"', text)
+    assert (
+        not {file.name for file in site.glob("*.html")}
+        - {"404.html", "index.html"}
+        - set(re.findall(r'href="([\w-]+\.html)"', text))
     )
 
 
