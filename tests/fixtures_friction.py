@@ -120,7 +120,7 @@ def damped_after(patch: Patch) -> None:
 
 
 FRICTION = {
-    "friction 1.1": (around(scaled(1.1)), ("friction_slide", "friction_momentum", "friction_step")),
+    "friction 1.1": (around(scaled(1.1)), ("friction_slide", "friction_course", "friction_momentum", "friction_step")),
     "friction 0.98": (around(scaled(0.98)), ("friction_slide", "friction_stick", "friction_step")),
     "friction pushes": (around(after=pushes), ("friction_slide", "friction_momentum", "friction_step")),
     "contact by the velocity before": (around(of_velocity_before), ("friction_slide", "friction_step")),

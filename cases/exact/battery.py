@@ -1,13 +1,27 @@
 """All exact tests of a method and a material; `run` is what a campaign calls."""
 
-from mpm_verify.cases.exact import edges, friction, motion, smoothing, state, step, symmetry, unusual, walls, weights
+from mpm_verify.cases.exact import (
+    edges,
+    friction,
+    large,
+    motion,
+    smoothed,
+    smoothing,
+    state,
+    step,
+    symmetry,
+    unusual,
+    walls,
+    weights,
+)
 from mpm_verify.cases.exact.body import Subject
 from mpm_verify.cases.exact.groups import GROUPS
-from mpm_verify.mms.constitutive import driver, history, stress
+from mpm_verify.mms.constitutive import driver, hardening, history, plastic, rates, stress
 from mpm_verify.mms.constitutive.tested import Tested
 
 GRID = {
     "weights": weights.tests,
+    "large": large.tests,
     "motion": motion.tests,
     "walls": walls.tests,
     "friction": friction.tests,
@@ -15,10 +29,17 @@ GRID = {
     "edges": edges.tests,
     "symmetry": symmetry.tests,
     "smoothing": smoothing.tests,
+    "smoothed": smoothed.tests,
     "state": state.tests,
     "unusual": unusual.tests,
 }
-POINT = {"stress": stress.tests, "history": history.tests}  # of the constitutive model alone
+POINT = {
+    "stress": stress.tests,
+    "history": history.tests,
+    "plastic": plastic.tests,
+    "hardening": hardening.tests,
+    "rates": rates.tests,
+}  # of the constitutive model alone
 
 
 def run(method: str = "cpdi", material: str = "neo_hookean") -> tuple[Tested, ...]:

@@ -4,9 +4,11 @@ Where each node is a wall a body moves as one, as a rigid block on a plane does:
 reaction up to it. So its velocity is known after each step, with every basis, transfer and stress update.
 """
 
+from collections.abc import Sequence
 from copy import copy
 from dataclasses import dataclass, field
 from functools import partial
+from itertools import groupby
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +20,18 @@ from mpm_verify.cases.exact.motion import still, taken
 from mpm_verify.cases.exact.step import KNOWN
 from mpm_verify.cases.exact.symmetry import moved
 from mpm_verify.mms.constitutive.driver import random
-from mpm_verify.mms.constitutive.tested import Pairs, Part, Reason, Tested, attempt, bound, farthest, not_asked, off
+from mpm_verify.mms.constitutive.tested import (
+    FAILED,
+    Pairs,
+    Part,
+    Reason,
+    Tested,
+    attempt,
+    bound,
+    farthest,
+    not_asked,
+    off,
+)
 from mpm_verify.solver.boundary import Walls, box
 from mpm_verify.solver.damping import Damping
 from mpm_verify.solver.energy_budget import Budget, kinetic, residual
@@ -30,7 +43,7 @@ MU, PRESSED = 0.4, 0.02  # friction coefficient, and the force into the wall ove
 HALF = 0.5  # of the force, damped
 SIDES: Sides = (0.3, "free", 0.5, "free")
 TURNED: dict[str, Sides] = {"mirror": ("free", 0.3, 0.5, "free"), "quarter_turn": ("free", 0.5, 0.3, "free")}
-STEPS = 4
+STEPS, COURSE = 4, 14
 # Axis of the normal, tangential over normal force, velocity at first over c: two go faster, two come to rest.
 SLIDES = ((0, 0.7, 0.3), (1, -0.7, -0.3), (1, 0.1, 0.02), (0, 0.1, -0.02))
 
@@ -40,7 +53,8 @@ def tests(subject: Subject) -> list[Tested]:
     found: list[Tested] = []
     for variant in every():
         for name, ask in (("friction_slide", slide), ("friction_stick", stick), ("friction_leave", leave),
-                          ("friction_damped", damped)):  # fmt: skip
+                          ("friction_damped", damped),
+                          ("friction_course", course)):  # fmt: skip
             found += attempt(f"{name} {variant}", Part.FRICTION, partial(ask, subject, variant))
         found += attempt(f"friction_budget {variant}", Part.FRICTION, partial(budget, subject, variant))
         found += attempt(f"friction_mirror {variant}", Part.FRICTION, partial(turned, subject, variant))
@@ -57,21 +71,20 @@ def everywhere(axis: int) -> FrictionalWalls:
 
 
 def carry(
-    subject: Subject, variant: Variant, axis: int, pull: float, press: tuple[float, ...], v: float, away: float = 0.0,
-    damping: Damping | None = None,
+    subject: Subject, variant: Variant, axis: int, pull: float | Floats, press: Sequence[float], v: float,
+    away: float = 0.0, damping: Damping | None = None
 ) -> tuple[Floats, float, float]:  # fmt: skip
     """Tangential and normal shifts and velocities (P,4) after some steps, what F and sigma changed by, energy damped.
 
-    `pull` is the tangential and `press` the normal force per mass of each step, times dt over c; `v` is the tangential
-    velocity at first over c, and `away` the normal one.
+    `pull` is the tangential force per mass, of all steps or of each, `press` the normal one of each, times dt over c;
+    `v` is the tangential velocity at first over c, and `away` the normal one.
     """
     p = populated(subject, layout(), np.eye(2))
     p.v[:, [1 - axis, axis]] = np.array([v, away]) * subject.speed
     model = modelled(subject, p, variant, everywhere(axis), damping=damping)
     force, x = np.zeros(2), by_id(p, "x")
-    force[1 - axis] = pull * subject.speed / model.dt
-    for one in press:
-        force[axis] = -one * subject.speed / model.dt
+    for along, one in zip(np.broadcast_to(pull, len(press)), press, strict=True):
+        force[[1 - axis, axis]] = np.array([along, -one]) * subject.speed / model.dt
         advance(model, lambda particles, t: np.copyto(particles.b, np.broadcast_to(force, particles.b.shape)))
     columns = [1 - axis, axis]
     moves = (by_id(model.particles, "x") - x)[:, columns] / DX
@@ -97,6 +110,26 @@ def stick(subject: Subject, variant: Variant) -> Tested:
     """Body at rest under a tangential force of 0.99 mu g_n: it does not move, to the last bit."""
     rows, _, _ = carry(subject, variant, 1, 0.99 * MU * PRESSED, STEPS * (PRESSED,), 0.0)
     return Tested(f"friction_stick {variant}", off(rows, 0.0, 1.0), 0.0, Part.FRICTION)
+
+
+def course(subject: Subject, variant: Variant) -> Tested:
+    """Body under random forces: it sticks, slips, leaves, falls back, and does each of them again.
+
+    Forces are some that take it away from where it begins: beside the edge of a domain nodes have hardly any mass.
+    """
+    forces = PRESSED * (random(COURSE, 2, seed=142) * [1.0, 1.5] + [0.0, 0.1])
+    rows, other, _ = carry(subject, variant, 0, forces[:, 0], forces[:, 1].tolist(), 0.0)
+    v, moved, told = np.zeros(2), np.zeros(2), ""  # leaves, sticks, slips
+    for force in forces * [1.0, -1.0]:
+        v = v + force
+        rubbed = MU * max(-v[1], 0.0)
+        told += "l" if v[1] > 0 else "k" if abs(v[0]) <= rubbed else "p"
+        v = np.array([v[0] - np.copysign(min(abs(v[0]), rubbed), v[0]), max(v[1], 0.0)])
+        moved = moved + subject.dt * subject.speed / DX * v
+    worst = max(off(rows, np.concatenate([moved, v]), 1.0), other)
+    again = all([one for one, _ in groupby(told)].count(kind) > 1 for kind in "lkp")
+    residual = worst if again else FAILED
+    return Tested(f"friction_course {variant}", residual, bound(2 * COURSE * subject.support), Part.FRICTION)
 
 
 def leave(subject: Subject, variant: Variant) -> Tested:

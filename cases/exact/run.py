@@ -60,13 +60,13 @@ class Run(RunRecord):
 
     @property
     def digest(self) -> str:
-        """Name of the Result, 16 hex digits: of the reference solver of all transfers and smoothings too."""
+        """Name of the Result, 16 hex digits: of the reference solver of all transfers, smoothings and rates too."""
         if self.solver:
             return self.named()
         from mpm_verify.cases.harness.identity import identity
-        from mpm_verify.solver.plugins import SMOOTHINGS, TRANSFERS
+        from mpm_verify.solver.plugins import RATES, SMOOTHINGS, TRANSFERS
 
-        used = (identity(package, name) for package in (TRANSFERS, SMOOTHINGS) for name in available(package))
+        used = (identity(package, name) for package in (TRANSFERS, SMOOTHINGS, RATES) for name in available(package))
         return self.named(" ".join(used))
 
     @property

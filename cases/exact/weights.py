@@ -35,10 +35,10 @@ def tests(subject: Subject) -> list[Tested]:
     return found
 
 
-def moments(subject: Subject, model: Model) -> Tested:
+def moments(subject: Subject, model: Model, F: Floats = STRAINED) -> Tested:
     """Sums of N, dN, N x and dN x: 1, 0, the particle's position and the unit tensor."""
     p = model.particles
-    w, away = weights(model, p.x, p.F), (carried(subject, model.grid.nodes, STRAINED) - 1.5) / DX
+    w, away = weights(model, p.x, p.F), (carried(subject, model.grid.nodes, F) - 1.5) / DX
     L = np.einsum("pnb,na->pab", w.dN * DX, away)
     pairs: Pairs = [
         (w.N.sum(axis=1), 1.0, 1.0),
@@ -98,12 +98,12 @@ def area(corners: Floats) -> Floats:
     return found
 
 
-def balances(subject: Subject, variant: Variant) -> list[Tested]:
+def balances(subject: Subject, variant: Variant, F: Floats = STRAINED) -> list[Tested]:
     """Sums over the nodes and their first moments against those of the particles; the work of forces on L x + c.
 
     Of reference nodes moments are those of X, and the work is that of the first Piola-Kirchhoff stress on L X + c.
     """
-    p = shaken(subject, populated(subject, layout(), STRAINED))
+    p = shaken(subject, populated(subject, layout(), F))
     model = modelled(subject, p, variant)
     p, g, c, rho = model.particles, model.grid, subject.speed, subject.material.rho0
     affine = 0.02 * c * DX * random(len(p), 4, seed=5) if p.affine_velocity.size else np.zeros((len(p), 4))

@@ -1,7 +1,7 @@
 """Constitutive model without a grid: rows of particles that are taken from one F to the next."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache
 from math import cos, sin
 from typing import Any
@@ -33,10 +33,11 @@ class Subject:
 
 @dataclass(frozen=True)
 class Point:
-    """State of material points after a path: sigma (P,4) and history (P,H)."""
+    """State of material points after a path: sigma (P,4), history (P,H), work (P,2) in rate form."""
 
     sigma: Floats
     history: Floats
+    work: Floats = field(default_factory=lambda: np.zeros((0, 2)))
 
 
 def drive(material: Any, path: Sequence[Floats], sigma: Floats, history: Floats | None = None) -> Point:
@@ -53,7 +54,19 @@ def drive(material: Any, path: Sequence[Floats], sigma: Floats, history: Floats 
     for F in path[1:] if p.F_old.size else path[-1:]:
         p.F[:] = F
         material.update(p, 1.0)
-    return Point(p.sigma.copy(), p.history.copy())
+    return Point(p.sigma.copy(), p.history.copy(), p.work.copy())
+
+
+def responded(material: Any, sigma: Floats, D: Floats, history: Floats | None = None) -> Point:
+    """Take points under sigma (P,4) through strain increments D (P,2,2) by the kernel of a model in rate form alone.
+
+    No F is in between, whose unit part would cost digits of a small strain, and no rate. `history` (P,H) as of `drive`.
+    """
+    history = material.initial(sigma) if history is None else history
+    point = Point(sigma.copy(), history.copy())
+    de = np.stack([D[:, 0, 0], D[:, 1, 1], D[:, 0, 1]], axis=1)
+    material.respond(material.constants(), point.sigma.reshape(-1), de.reshape(-1), point.history.reshape(-1))
+    return point
 
 
 def apart(material: Any, one: Floats, other: Floats, unit: float) -> float:

@@ -1,5 +1,6 @@
-"""Memory of a soil: sums go on from what they were, plastic strain is what elasticity leaves, tension is cut off."""
+"""Memory of a soil: sums go on from what they were, plastic strain is what elasticity leaves, tension and voids."""
 
+from dataclasses import replace
 from functools import partial
 from math import inf, radians, tan
 
@@ -26,11 +27,12 @@ BEFORE = 0.017  # what a sum holds before the path
 
 
 def tests(subject: Subject) -> list[Tested]:
-    """Sums of the memory, plastic strain, strength and tension cut-off."""
+    """Sums of the memory, plastic strain, strength, tension cut-off, and void strain."""
     found = attempt("history_sums", Part.HISTORY, partial(sums, subject))
     found += attempt("plastic_volume", Part.HISTORY, partial(plastic, subject))
     found += attempt("strength", Part.STRESS, partial(admissible, subject))
-    return found + attempt("cut_off", Part.CUT_OFF, partial(cut_off, subject))
+    found += attempt("cut_off", Part.CUT_OFF, partial(cut_off, subject))
+    return found + attempt("void_contact", Part.HISTORY, partial(contact, subject))
 
 
 def strain(subject: Subject) -> Floats:
@@ -139,3 +141,29 @@ def cut_off(subject: Subject) -> Tested:
     zz = point.sigma[:, 2] - tension
     beyond = np.abs(zz) if tension == apex or material.moduli is not None else np.maximum(zz, 0.0)
     return Tested(name, max(plane, off(beyond, 0.0, unit)), bound(64), Part.CUT_OFF)
+
+
+def contact(subject: Subject) -> Tested:
+    """Void strain: a step that closes it is the part of the step behind contact; one that does not leaves no stress."""
+    name, material = "void_contact", subject.material
+    if "void" not in material.memory or material.cohesion:
+        return not_asked(name, Part.HISTORY, Reason.NO_VOID)
+    if material.rate == "truesdell":
+        return not_asked(name, Part.HISTORY, Reason.STRETCHED)
+    material, sigma, D = replace(material, void=1.0), np.zeros((POINTS, 4)), 10 * strain(subject)
+    volume, column = np.trace(D, axis1=1, axis2=2), material.memory.index("void")
+    void = np.abs(volume) * (1 + 0.7 * random(POINTS, seed=13))  # half of those that are compressed touch
+    touches = volume < -void
+    history = material.initial(sigma)
+    history[:, column] = void
+    unit = np.broadcast_to(np.eye(2), D.shape).copy()
+    found = drive(material, [unit, straight(D)], sigma, history)
+    behind = np.where(touches, 1 + void / np.where(touches, volume, 1.0), 0.0)
+    known = drive(material, [unit, straight(behind[:, None, None] * D)], sigma, material.initial(sigma))
+    expected = known.history.copy()
+    expected[:, column] += np.where(touches, 0.0, void + volume)
+    residual = max(
+        off(found.sigma, known.sigma, 10 * CONFINED * subject.stress),
+        apart(material, found.history, expected, subject.stress),
+    )
+    return Tested(name, residual if touches.any() else FAILED, bound(64), Part.HISTORY)

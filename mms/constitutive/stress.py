@@ -39,9 +39,13 @@ def tests(subject: Subject) -> list[Tested]:
 
 
 def deformations() -> dict[str, Floats]:
-    """F (P,2,2) with shear, and turned so far that none is nearly symmetric."""
+    """F (P,2,2) with shear, turned so far that none is nearly symmetric, and with stretches that are (nearly) equal."""
     sheared = np.eye(2) + 0.35 * random(POINTS, 2, 2, seed=6)
-    return {"stress": sheared, "stress_turned": np.stack([turn(a) for a in np.linspace(-3, 3, POINTS)]) @ sheared}
+    turns = np.stack([turn(a) for a in np.linspace(-3, 3, POINTS)])
+    even = np.linspace(0.7, 1.5, POINTS)[:, None, None] * np.eye(2)
+    even[::4] = np.eye(2)
+    even[1::4] += np.geomspace(1e-12, 1e-2, POINTS // 4)[:, None, None] * random(POINTS // 4, 2, 2, seed=16)
+    return {"stress": sheared, "stress_turned": turns @ sheared, "stress_even": turns @ even}
 
 
 def energetic(subject: Subject, name: str, F: Floats) -> Tested:

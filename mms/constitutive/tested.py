@@ -64,10 +64,14 @@ class Reason(StrEnum):
     NO_FRICTION = "no_friction"
     NO_CUT_OFF = "no_cut_off"  # neither an apex nor a tension cut-off
     IN_SPACE = "in_space"  # a yield surface of all three principal stresses
+    NO_SURFACES = "no_surfaces"  # perfectly plastic with surfaces that the battery does not know, or not so
+    NO_HARDENING = "no_hardening"  # no sand that hardens
+    NO_VOID = "no_void"  # no void strain, or cohesion
     OPENED = "opened"  # strain that opens and closes voids is neither elastic nor plastic
     NO_SUMS = "no_sums"  # no memory that is a sum
     OWN_AXES = "own_axes"  # the material tells its axes apart
     FILTER = "filter"  # a filter, applied twice, filters twice
+    FILTERED = "filtered"  # velocities are filtered after the reaction is taken
     BUDGET = "budget"  # the energy budget is that of update-stress-last, and of positions that move with the nodes
     POINTS = "points"  # forces on the edge act through points
     REFERENCE = "reference"  # weights of the reference positions

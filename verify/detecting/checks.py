@@ -40,7 +40,7 @@ VARIANTS = (
     "mohr_coulomb:void=1",
 )  # cut-off, apex, void
 OTHERS = ("hencky", "drucker_prager", "ubcsand", "hypoelastic", "linear_elastic", *VARIANTS)
-OF_MODEL = ("step", "stress", "history", "smoothing", "state")  # groups of exact tests
+OF_MODEL = ("step", "stress", "history", "plastic", "hardening", "smoothing", "state")  # groups of exact tests
 PATHS = ("oedometric", "biaxial", "shear_volume", "properties")
 TRIAXIAL = ("triaxial_compression", "triaxial_extension")  # of soils in rate form
 COARSE: Mapping[str, tuple[tuple[int, ...], tuple[int, ...]]] = {  # cells and particles per cell, by problem
