@@ -23,7 +23,7 @@ from mpm_verify.mms.constitutive.tested import Part, Reason, Tested, attempt, bo
 from mpm_verify.solver.state import Floats
 
 COUNT = 96  # states of random axes, a third of them on a surface
-SIZES = (0.3, 3.0, 30.0)  # of the elastic stress increments, over the confining stress
+SIZES = (0.0, 0.3, 3.0, 30.0)  # of the elastic stress increments, over the confining stress
 OPERATIONS = 64
 CONES = ("plane_strain", "compression")
 # Parameters beside those given, stresses over the confining one; what a class does not have is left out.
@@ -141,7 +141,7 @@ def states(subject: Subject, known: Surfaces) -> tuple[Floats, Floats]:
         [middle + radius * np.cos(angle), middle - radius * np.cos(angle), zz, radius * np.sin(angle)], axis=1
     )
     even = np.array(list(product((-1.0, 0.0, 1.0), (-1.0, 0.0, 1.0), (0.0, 1.0))))
-    evenly = np.concatenate([unit / (2 * subject.material.mu) * one * even for one in SIZES])
+    evenly = np.concatenate([unit / (2 * subject.material.mu) * one * even for one in SIZES[1:]])
     sigma = np.concatenate([mixed, np.tile([-unit, -unit, -unit, 0.0], (len(evenly), 1))])
     return sigma, symmetric(np.concatenate([size[:, None] * random(COUNT, 3, seed=23), evenly]))
 
