@@ -9,13 +9,15 @@ from mpm_verify.solver._jit import kernel
 def slip(t, s, G, stiff, D, a, k, eta_m):
     """Plastic shear strain L > 0 with t - G L = eta(L) (s - stiff D L): the positive root, by the stable formula.
 
-    -1 where there is none: the hyperbola passes by, and what is met is its end, the strength.
+    -1 where there is none: the hyperbola passes by, and what is met is its end, the strength. None is 0 where t is that
+    of eta_m to the last bit: rounded below it, it would be taken for one that passes by.
     """
     q = eta_m / (1.0 - a * eta_m)
     open_ = 1.0 + a * q
     A = k * (stiff * D - G * a)
     B = k * (a * t - s) + q * stiff * D - open_ * G
     C = open_ * t - q * s
+    C = 0.0 if C < 0.0 else C
     root = B * B - 4.0 * A * C
     return -1.0 if root < 0.0 else 2.0 * C / (np.sqrt(root) - B)  # NaN goes on
 

@@ -96,6 +96,18 @@ def too_little(reaction: Reaction, *given: Any) -> None:
     reaction.force *= 0.999
 
 
+def rounded_to_failure(patch: Patch) -> None:
+    """States on the yield surface whose slip is rounded below zero fail."""
+    original = Ubcsand.respond
+
+    def respond(constants: Any, sigma: Any, de: Any, history: Any) -> None:
+        original(constants, sigma, de, history)
+        if not de.any():
+            history[::700] = constants[7]
+
+    patch.setattr(Ubcsand, "respond", staticmethod(respond))
+
+
 MATERIAL: dict[str, tuple[Plant, tuple[str, ...], str]] = {
     "no stress of equal stretches": (no_number, ("stress_even",), "hencky"),
     "void closes with more": (closed_late, ("void_contact",), "mohr_coulomb"),
@@ -104,6 +116,7 @@ MATERIAL: dict[str, tuple[Plant, tuple[str, ...], str]] = {
     "bulk modulus 0.1 % high": (parameters(Ubcsand, KBe=1.001), ("secant",), "ubcsand"),
     "hyperbola 0.1 % off": (parameters(Ubcsand, Rf=0.999), ("hardening",), "ubcsand"),
     "constant volume 0.1 % off": (parameters(Ubcsand, phi_pt=0.999), ("flow_rule",), "ubcsand"),
+    "neutral loading fails": (rounded_to_failure, ("neutral",), "ubcsand"),
     "work 0.1 % high": (around(RateMaterial, "update", more_work), ("work",), "hypoelastic"),
     "smoothing takes all": (lambda p: p.setattr(Smoothing, "check", lambda self, material: None),
                             ("smoothing_refused",), "neo_hookean"),

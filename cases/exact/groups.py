@@ -17,7 +17,7 @@ GROUPS = {
                "wave_speed"),
     "history": ("history_sums", "plastic_volume", "plastic_shear", "strength", "cut_off", "void_contact"),
     "plastic": ("return_mapping", "return_memory"),
-    "hardening": ("secant", "hardening", "flow_rule"),
+    "hardening": ("secant", "hardening", "flow_rule", "neutral"),
     "rates": ("rate_path", "work"),
     "smoothing": ("smoothing_means", "smoothing_constants", "smoothing_adjoint", "smoothing_twice", "smoothing_parts",
                   "smoothing_uniform", "smoothing_ratio"),

@@ -11,12 +11,13 @@ from typing import Any
 
 import numpy as np
 
-from mpm_verify.mms.constitutive.driver import Point, Subject, circle, random, responded, symmetric
+from mpm_verify.mms.constitutive.driver import Point, Subject, apart, circle, random, responded, symmetric
 from mpm_verify.mms.constitutive.stress import POINTS
 from mpm_verify.mms.constitutive.tested import FAILED, Part, Reason, Tested, attempt, bound, not_asked, off
 from mpm_verify.solver.state import Floats
 
-PARTS = {"secant": Part.STRESS, "hardening": Part.STRESS, "flow_rule": Part.HISTORY}
+PARTS = {"secant": Part.STRESS, "hardening": Part.STRESS, "flow_rule": Part.HISTORY, "neutral": Part.STRESS}
+MANY = 4000  # some in a thousand are rounded to the other side of the yield surface
 SHORT = 1e-4  # stress increments over the mean stress
 POINTS_OF_GAUSS = np.polynomial.legendre.leggauss(5)
 
@@ -25,7 +26,8 @@ def tests(subject: Subject) -> list[Tested]:
     """Elastic and plastic steps of a hardening sand."""
     if subject.material.name != "ubcsand":
         return [not_asked(name, part, Reason.NO_HARDENING) for name, part in PARTS.items()]
-    return attempt("secant", Part.STRESS, partial(steps, subject))
+    found = attempt("secant", Part.STRESS, partial(steps, subject))
+    return found + attempt("neutral", Part.STRESS, partial(neutral, subject))
 
 
 @dataclass(frozen=True)
@@ -76,6 +78,22 @@ def states(sand: Any) -> tuple[Point, Floats]:
     history[1::4, 0] = (sand.eta_f + eta[1::4]) / 2
     size = SHORT * s / (sand.KGe * sand.Pa * (s / sand.Pa) ** sand.ne)
     return Point(sigma, history), symmetric(size[:, None] * random(POINTS, 3, seed=34))
+
+
+def neutral(subject: Subject) -> Tested:
+    """Steps of no strain, and of strains that are round-off, from many states on the branch: nothing changes."""
+    sand = subject.material
+    s, eta, angle = (random(MANY, seed=seed) for seed in (35, 36, 37))
+    s, eta = sand.Pa * 10 ** (1.5 * s - 1), sand.eta_f * np.abs(eta)
+    t = eta * (s + sand.shift)
+    half = t * np.cos(3 * angle)
+    sigma = np.stack([half - s, -half - s, -0.8 * s, t * np.sin(3 * angle)], axis=1)
+    begun, worst = sand.initial(sigma), 0.0
+    for size in (0.0, 2.0**-64):
+        end = responded(sand, sigma, symmetric(size * random(MANY, 3, seed=38)), begun)
+        moved = (end.sigma - sigma) / (s + sand.shift)[:, None]
+        worst = max(worst, off(moved, 0.0, 1.0), apart(sand, end.history, begun, sand.Pa))
+    return Tested("neutral", worst, bound(64), Part.STRESS)
 
 
 def elastic(

@@ -92,6 +92,7 @@ HELD = {
     "secant": "strain that is no slip is elastic, with the moduli and axes of the middle of the step",
     "hardening": "slip follows the hyperbola, and t is at most the mobilised part of s",
     "flow_rule": "volume and work of the slip are those of the mean mobilised ratio",
+    "neutral": "a step of no strain changes nothing, wherever on the yield surface it begins",
     "rate_path": "stress at the end of a path that stretches, shears and turns, extrapolated to steps of no length",
     "work": "work of a step is J σ : D, at its start and at its end",
     "smoothing_means": "projected values against sums by cells and nodes",
