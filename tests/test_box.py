@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from fixtures_command import Call, caller, one_line
+from matplotlib.figure import Figure
 
 from mpm_verify.cases.box.case import BoxAnalysis, examine
 from mpm_verify.cases.box.execute import execute, setup
@@ -17,6 +18,9 @@ from mpm_verify.cases.box.run import ROWS, Result, Run
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.cases.harness.study import Study
 from mpm_verify.cases.judging.records import Outcome
+from mpm_verify.reports.export.summary import markdown
+from mpm_verify.reports.figures.box import rows, times
+from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences.box import control
 from mpm_verify.solver.layout import rectangle
 from mpm_verify.solver.state import Floats
@@ -143,6 +147,7 @@ def test_a_control_whose_sides_carry_nothing_is_the_alarm(found: list[dict[str, 
                for run, values in zip(runs, found, strict=True) if values is not None}  # fmt: skip
     record: Any = SimpleNamespace(study=study, analysis=examine(study, results, Store(Path("none"), "box")))
     assert says in control(record)
+    assert says in markdown(Record(Store(Path("none"), "box"), study, results, earlier=False))
     record.study = replace(study, runs=study.runs[:1])
     assert control(record) == ""
 
@@ -170,6 +175,29 @@ def test_bands_are_judged_where_they_were_measured(change: dict[str, str], judge
     assert [outcomes.count(one) for one in (Outcome.PASS, Outcome.FAIL)] == [6, 2 + judged]
     assert outcomes.count(Outcome.INCONCLUSIVE) == 4 - judged
     assert {one.outcome for one in analysed({}, **change).checks} == {"ERROR"}
+
+
+def shaded(figure: Figure) -> list[int]:
+    """Number of bands in each panel."""
+    return [len(axes.patches) for axes in figure.axes]
+
+
+@pytest.mark.parametrize(
+    ("change", "bands"),
+    [
+        ({}, [1, 1, 1, 1]),
+        ({"method": "gimp"}, [1, 0, 1, 0]),
+        ({"material": "mohr_coulomb:c=200,psi=0"}, [1, 0, 0, 0]),
+    ],
+)
+def test_figures_shade_what_is_judged(change: dict[str, str], bands: list[int]) -> None:
+    """Weight, K, particles without stress, top; one run that is judged is enough."""
+    arrays: dict[str, Any] = {"rested": {"weight": [1.0] * ROWS, "K": [0.5] * ROWS}}
+    arrays |= {f"curve_{name}": np.ones(2) for name in ("t", "free", "top")}
+    other = ("a", replace(RUN, **change), arrays)
+    assert shaded(rows([other])) + shaded(times([other])) == bands
+    both = [other, ("b", RUN, arrays)]
+    assert shaded(rows(both)) + shaded(times(both)) == [1, 1, 1, 1]
 
 
 def test_the_shifts_are_those_of_their_seed() -> None:
@@ -213,6 +241,8 @@ def test_the_page_has_the_problem_and_three_figures(verify: Call) -> None:
         (["--method", "tlmpm"], "choose --method cpdi"),
         (["--damping", "1"], "must lie from 0 to below 1"),
         (["--seed", "-1"], "must be zero or more"),
+        (["--pooling", "maybe"], "--pooling 'maybe' cannot be read; write yes or no"),
+        (["--no-pooling", "maybe"], "(maybe)"),
     ],
 )
 def test_refusals(verify: Call, typed: list[str], says: str) -> None:

@@ -498,5 +498,5 @@ def test_a_number_that_cannot_be_read_is_told_plainly(verify: Verify) -> None:
 
 
 def test_what_the_parser_refuses_names_the_help(verify: Verify) -> None:
-    assert verify("mms", "--staggered", "maybe").line.endswith("(maybe); verify mms --help says more\n")
+    assert verify("mms", "maybe").line.endswith("(maybe); verify mms --help says more\n")
     assert verify("example").line == "verify: Missing argument 'LANGUAGE'; verify example --help says more\n"

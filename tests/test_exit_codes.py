@@ -262,7 +262,8 @@ def test_dry_run(verify: Call, idle: None, tmp_path: Path, name: str) -> None:
     assert all(line.startswith("to do   ") for line in runs)
     assert len({line.split()[2] for line in runs}) == len(runs) > 0
     assert len({line.split(maxsplit=3)[3] for line in runs}) == len(runs)  # each says what it is
-    assert f": {len(runs)} run{'s' * (len(runs) > 1)} to be done, 0 stored, up to " in last
+    assert f": {len(runs)} run{'s' * (len(runs) > 1)} to be done, 0 stored, " in last
+    assert "up to 1 particle" not in last  # of what has none, or is not known
     assert content(tmp_path) == []
 
 

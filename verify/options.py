@@ -81,8 +81,14 @@ class StudyCommand(TyperCommand):
             return word
         if word.startswith("--no-"):
             return f"--{name.replace('_', '-')}=no"
-        valued = bool(after) and bool(re.fullmatch(r"(yes|no|true|false)(,(yes|no|true|false))?", after[0]))
-        return word if valued else f"{word}=yes"
+        return word if self.valued(after) else f"{word}=yes"
+
+    def valued(self, after: list[str]) -> bool:
+        """Whether the next argument is a value: yes or no, or any text where the command takes no text by itself."""
+        if not after or after[0].startswith("-"):
+            return False
+        alone = any(item.param_type_name == "argument" for item in self.params)
+        return not alone or bool(re.fullmatch(r"(yes|no|true|false)(,(yes|no|true|false))?", after[0]))
 
 
 def study_command(

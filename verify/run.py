@@ -254,8 +254,8 @@ class Estimate:
     def __str__(self) -> str:
         """Estimate in one line."""
         runs = f"{self.runs} run{'s' * (self.runs != 1)} to be done, {self.stored} stored"
-        told = f"{runs}, up to {self.particles:,} particles"
-        return f"{told}, about {self.memory / 2**30:.1f} GB of memory and {duration(self.seconds)}"
+        sized = f", up to {self.particles:,} particles" * (self.particles > 1)  # 1: of what has none, or is not known
+        return f"{runs}{sized}, about {self.memory / 2**30:.1f} GB of memory and {duration(self.seconds)}"
 
 
 def estimate(study: "Study[Any]", store: Any, settings: Settings) -> Estimate:

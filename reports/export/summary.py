@@ -3,11 +3,11 @@
 from mpm_verify.reports import words
 from mpm_verify.reports.components.logs import failed
 from mpm_verify.reports.frames import Record
-from mpm_verify.reports.sentences import commands, controls, own_solver, verdicts
-from mpm_verify.reports.sentences.benchmark import control
+from mpm_verify.reports.sentences import benchmark, box, commands, controls, own_solver, verdicts
 from mpm_verify.reports.sentences.headline import badge, headline
 
 MARKS = {"PASS": "✅", "FAIL": "❌", "INCONCLUSIVE": "❔", "ERROR": "⚠️"}
+SPOILT = {"benchmark": benchmark.control, "box": box.control}  # cases with failing controls
 MET = "🔷"  # a registered non-convergence that was seen
 
 
@@ -28,7 +28,7 @@ def markdown(record: Record) -> str:
                      words.order(v.observed), verdicts.registered(plan.expectation),
                      commands.reason(study, f))  # fmt: skip
             lines.append(f"| {' | '.join(map(escaped, cells))} |")
-    if spoilt := control(record) if study.case == "benchmark" else "":
+    if study.case in SPOILT and (spoilt := SPOILT[study.case](record)):
         lines += ["", spoilt]
     if told := controls.sentence(found.controls):
         lines += ["", told]

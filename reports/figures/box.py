@@ -10,7 +10,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
 
-from mpm_verify.cases.box.case import AROUND, FREE, TOP, WEIGHT, K
+from mpm_verify.cases.box.case import AROUND, FREE, TOP, WEIGHT, K, known
 from mpm_verify.cases.box.run import LOW, ROWS, Run
 from mpm_verify.reports.figures import style
 
@@ -65,12 +65,13 @@ def drawn(axes: Axes, run: Run, arrays: dict[str, Any], values: Any) -> None:
 
 
 def rows(runs: Sequence[Drawn]) -> Figure:
-    """Weight that each row carries, and K, against height; bands are what is asked."""
+    """Weight that each row carries, and K, against height; bands are what is asked, where it is judged."""
     with rc_context(style.RC):
         figure = Figure(figsize=(7.6, 4.6), layout="constrained")
         weight, ratio = figure.subplots(1, 2, sharey=True)
         weight.axvspan(1 - WEIGHT, 1 + WEIGHT, color=BAND, linewidth=0)
-        ratio.axvspan(K - AROUND, K + AROUND, ymax=LOW / ROWS, color=BAND, linewidth=0)
+        if judged(runs)[1]:
+            ratio.axvspan(K - AROUND, K + AROUND, ymax=LOW / ROWS, color=BAND, linewidth=0)
         middles = (np.arange(ROWS) + 0.5) / ROWS
         for number, (label, _, arrays) in enumerate(runs):
             for axes, key in ((weight, "weight"), (ratio, "K")):
@@ -82,12 +83,15 @@ def rows(runs: Sequence[Drawn]) -> Figure:
 
 
 def times(runs: Sequence[Drawn]) -> Figure:
-    """Particles without stress, and the top, against time."""
+    """Particles without stress, and the top, against time; bands are what is asked, where it is judged."""
     with rc_context(style.RC):
         figure = Figure(figsize=(7.6, 4.0), layout="constrained")
         free, top = figure.subplots(1, 2)
-        free.axhspan(0, FREE, color=BAND, linewidth=0)
-        top.axhspan(1 - TOP, 1 + TOP, color=BAND, linewidth=0)
+        stressed, band = judged(runs)
+        if stressed:
+            free.axhspan(0, FREE, color=BAND, linewidth=0)
+        if band:
+            top.axhspan(1 - TOP, 1 + TOP, color=BAND, linewidth=0)
         for number, (label, _, arrays) in enumerate(runs):
             look = {key: value for key, value in mark(number).items() if key in ("color", "linestyle")}
             free.plot(arrays["curve_t"], arrays["curve_free"], label=label, linewidth=1.2, **look)
@@ -96,6 +100,12 @@ def times(runs: Sequence[Drawn]) -> Figure:
         top.set(xlabel="time [s]", ylabel="top / height of the column", ylim=(0.9, None))
         below(figure, free)
     return figure
+
+
+def judged(runs: Sequence[Drawn]) -> tuple[bool, bool]:
+    """Whether particles without stress are judged of any run, and whether K and top are."""
+    marks = [known(run) for _, run, _ in runs]
+    return any(not free for free, _ in marks), any(not band for _, band in marks)
 
 
 def mark(number: int) -> dict[str, Any]:

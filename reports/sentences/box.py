@@ -14,11 +14,11 @@ SAND = (
     "that of the whole column at the floor, where sand at rest has 1; the dashes are at the height of the column."
 )
 ROWS = (
-    "Rows are sevenths of the column, means over the last tenth of the time. Shaded: what is asked, of K for the rows "
-    "below two thirds of the height together. The sums on the left are those of the forces on the grid, and say "
-    "nothing of single particles."
+    "Rows are sevenths of the column, means over the last tenth of the time. Shaded: what is asked, where it is "
+    "judged: of K for the rows below two thirds of the height together. The sums on the left are those of the forces "
+    "on the grid, and say nothing of single particles."
 )
-TIMES = "How it came to rest. Shaded: what is asked at the end."
+TIMES = "How it came to rest. Shaded: what is asked at the end, where it is judged."
 NOTES = (
     "Void: the mean void strain, volume that no grain fills; dilation: the mean plastic one. The area is the mean of "
     "det F, which is 1 and both, less what the weight compresses. Largest: that of any particle over the mean of the "
