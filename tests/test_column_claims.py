@@ -6,8 +6,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mpm_verify.cases.column.claims import Claim, ClaimCode, FinishedRun, beyond, claims, families
+from mpm_verify.cases.column.claims import beyond, claims, families
 from mpm_verify.cases.column.experiment import experiment
+from mpm_verify.cases.column.records import Claim, ClaimCode, FinishedRun
 from mpm_verify.cases.column.run import ColumnRun
 from mpm_verify.reports.sentences import column as words
 
@@ -62,6 +63,58 @@ def test_particles() -> None:
     sinking = said([ran(0.7, 0.14, ppc=1, creep=0.2), ran(0.91, 0.16, ppc=9)], "ppc")
     assert sinking[ClaimCode.HEIGHT_RISES].reproduced is True  # it can only become more so
     assert "fell by up to 20.0 %" in words.found(moving[ClaimCode.HEIGHT_RISES])
+
+
+def by_measures(one: FinishedRun, **lengths: float) -> FinishedRun:
+    """The run with lengths by other measures too; curves end at them."""
+    more = {name: one.curves["front_99"] * length / one.front for name, length in lengths.items()}
+    return replace(one, values=one.values | lengths | {"creep_fit": one.values["creep"]}, curves=one.curves | more)
+
+
+def test_a_claim_is_answered_by_every_measure() -> None:
+    """The usual first; where another answers otherwise it is told with its numbers, and counted."""
+    few = by_measures(ran(0.70, 0.18, ppc=1), front_999=0.76, toe=0.85, height_fit=0.16)
+    more = by_measures(ran(0.90, 0.19, ppc=9), front_999=0.95, toe=0.98, height_fit=0.17)
+    held = said([few, more], "ppc")
+    over, under = held[ClaimCode.FRONT_OVER], held[ClaimCode.HEIGHT_UNDER_WITH_ONE]
+    assert list(over.by.items()) == [("front_99", False), ("front_999", False), ("toe", True)]
+    assert list(under.by.items()) == [("height", False), ("height_fit", True)]
+    assert (over.reproduced, under.reproduced) == (False, False)
+    assert [code for code, claim in held.items() if claim.hangs] == [over.code, under.code]
+    assert words.found(over).endswith(
+        "By the front of 99 % of the mass; by that of 99.9 % the same; by the toe reproduced: 0.850 m with 1 per cell, "
+        "0.980 m with 9 per cell."
+    )
+    assert over.runs[0].lengths == {
+        "front_99": 0.70,
+        "front_999": 0.76,
+        "toe": 0.85,
+        "height": 0.18,
+        "height_fit": 0.16,
+    }
+    same = said([by_measures(ran(0.9, ppc=1), front_999=0.95, toe=0.98, height_fit=0.15), more], "ppc")
+    assert not same[ClaimCode.FRONT_OVER].hangs
+    assert words.found(same[ClaimCode.FRONT_OVER]).endswith("; by that of 99.9 % and the toe the same.")
+
+
+def test_every_claim_hangs_on_a_front_a_height_or_an_energy() -> None:
+    """Materials, their curves among it: the toe may part early where the front does not. Energies have no measure."""
+    plain = by_measures(ran(0.84), front_999=0.90, toe=0.93, height_fit=0.15)
+    sand = by_measures(ran(0.82, material="ubcsand"), front_999=0.80, toe=0.95, height_fit=0.15)
+    found = said([plain, sand], "material")
+    assert found[ClaimCode.SAND_STIFFER].by == {"front_99": True, "front_999": False, "toe": False}
+    assert set(found[ClaimCode.SAND_LATE].by) == {"front_99", "front_999", "toe"}
+    assert found[ClaimCode.SAND_EARLY].by == {}
+    damped = by_measures(ran(0.8, damping=0.1), front_999=0.85, toe=0.9, height_fit=0.15)
+    without = {claim.code for claim in said([plain, damped], "damping").values() if not claim.by}
+    assert without == {ClaimCode.POTENTIAL_KEPT, ClaimCode.KINETIC_CHANGED}
+
+
+def test_runs_stored_before_a_measure_was_made_have_the_others() -> None:
+    old = ran(0.9, ppc=1)
+    new = by_measures(ran(0.91, ppc=9), front_999=0.95, toe=0.98, height_fit=0.15)
+    assert list(said([old, new], "ppc")[ClaimCode.FRONT_OVER].by) == ["front_99"]
+    assert words.found(said([old, new], "ppc")[ClaimCode.FRONT_OVER]).endswith("By the front of 99 % of the mass.")
 
 
 def test_damping() -> None:

@@ -7,15 +7,21 @@ from shutil import copytree
 from typing import Any
 from xml.etree import ElementTree
 
+import numpy as np
+import pandas as pd
 import pytest
 
-from mpm_verify.cases.column.claims import ClaimCode
 from mpm_verify.cases.column.exam import ColumnRemark, examine
+from mpm_verify.cases.column.records import ClaimCode
 from mpm_verify.cases.column.run import ColumnRun
 from mpm_verify.cases.harness.checks import Remark
 from mpm_verify.cases.harness.store import Store
+from mpm_verify.reports.export.column_files import tables
+from mpm_verify.reports.figures.column import profiles
 from mpm_verify.reports.frames import read
+from mpm_verify.reports.pages.column import numbers
 from mpm_verify.reports.sentences.column import listed
+from mpm_verify.reports.words import DASH
 from mpm_verify.verify.main import main
 
 SMALL = ("--cells", "2", "--ppc", "4")
@@ -81,7 +87,15 @@ def test_a_column_from_release_to_rest(verify: Any) -> None:
     assert f"{run.digest}.pvd" in names
     assert len(ElementTree.parse("out.xml").getroot()) == 7
     header = Path("results/column-cells-2-ppc-4/tables/curves.csv").read_text().partition("\n")[0].split(",")
-    assert {"t", "front_99", "height", "kinetic", "plastic", "residual"} <= set(header)
+    assert {"t", "front_99", "front_999", "toe", "height", "height_fit", "kinetic", "on_grid", "residual"} <= set(
+        header
+    )
+    ended = pd.read_csv("results/column-cells-2-ppc-4/tables/profiles.csv")
+    assert list(ended) == ["digest", "x", "profile", "profile_levelled", "profile_volume"]
+    values = store.get(run.digest).values
+    for name, expected in {"levelled": values["area_levelled"], "volume": values["volume"]}.items():
+        total = ended[f"profile_{name}"].sum() * run.strip / (run.width * run.height)
+        assert total == pytest.approx(expected, rel=1e-3)  # but for particles that fly
 
 
 def test_json(verify: Any) -> None:
@@ -93,7 +107,10 @@ def test_json(verify: Any) -> None:
     (one,) = told["runs"]
     assert one["gate"] is None  # infinite
     assert one["values"]["rest"] is None
-    assert one["values"]["front_99"] > 0.08
+    fronts = [one["values"][name] for name in told["more"]["measures"]["front"]]
+    assert 0.08 < fronts[0] < fronts[1] < fronts[2] * 1.05
+    assert told["more"]["measures"]["height"] == ["height", "height_fit"]
+    assert one["values"]["on_grid"] > 0
     assert any(check["outcome"] == "FAIL" and check["group"] == "Runs" for check in told["checks"])
 
 
@@ -104,7 +121,7 @@ def test_what_a_sweep_says(swept: Path) -> None:
     assert {listed(claim.shared) for claim in collapse.claims} == {
         "no damping", "10 % damping", "4 per cell", "9 per cell", "16 per cell",
     }  # fmt: skip
-    assert [(one.axis, one.shared) for one in collapse.refined[::4]] == [
+    assert [(one.axis, one.shared) for one in collapse.refined[::5]] == [
         ("ppc", {"damping": 0.0}), ("ppc", {"damping": 0.1}),
     ]  # fmt: skip
     assert [value for value, _ in collapse.refined[0].levels] == [16, 9, 4]
@@ -134,6 +151,31 @@ def test_a_report_is_made_again(verify: Any, swept: Path) -> None:
     ended = verify("report", str(swept))
     assert (ended.code, ended.err) == (0, "")
     assert (swept / "report.html").read_bytes() == page
+
+
+def test_results_stored_before_a_measure_was_made_are_read(swept: Path, tmp_path: Path) -> None:
+    """Their numbers stand, a dash for what they do not have; claims and refinements are those of the others."""
+    folder = Path(copytree(swept, tmp_path / "out"))
+    for file in (folder / "runs").glob("*.json"):
+        told = json.loads(file.read_text())
+        for name in ("height_fit", "area_levelled", "creep_fit"):
+            del told["values"][name]
+        file.write_text(json.dumps(told))
+    for file in (folder / "runs").glob("*.npz"):
+        with np.load(file) as stored:
+            kept = {k: stored[k] for k in stored.files if k not in ("curve_profile_levelled", "curve_profile_volume")}
+        np.savez(file, **{k: v for k, v in kept.items() if k != "curve_height_fit"})
+    whole, old = read(swept).analysis.more, read(folder).analysis.more
+    assert [one.values["front_99"] for one in old.ran] == [one.values["front_99"] for one in whole.ran]
+    assert [(c.code, c.reproduced) for c in old.claims] == [(c.code, c.reproduced) for c in whole.claims]
+    assert {one.quantity for one in whole.refined} - {one.quantity for one in old.refined} == {"height_fit"}
+    run = old.study.runs[0]
+    cells = numbers(run, old.results[run.digest])
+    assert (cells[3] != DASH, cells[4], cells[7]) == (True, DASH, DASH)
+    assert len(profiles(old.ran, ["a"] * 6).axes) == 1
+    assert len(profiles(whole.ran, ["a"] * 6).axes) == 2
+    tables(old, read(folder).store, folder / "tables")
+    assert (folder / "tables" / "profiles.csv").read_text().startswith("digest,ppc,damping,x,profile\n")
 
 
 @pytest.mark.slow  # five seconds of pages

@@ -12,8 +12,9 @@ import numpy as np
 import pytest
 from test_column_claims import ran
 
-from mpm_verify.cases.column.claims import SPEAK, ClaimCode, claims
+from mpm_verify.cases.column.claims import SPEAK, claims
 from mpm_verify.cases.column.exam import ColumnRemark
+from mpm_verify.cases.column.records import ClaimCode
 from mpm_verify.cases.element.element import ElementFailure
 from mpm_verify.cases.element.exam import ElementRemark
 from mpm_verify.cases.harness.build import Asked, build

@@ -14,7 +14,8 @@ from collections.abc import Sequence
 from math import inf, nan, sqrt
 from typing import Any
 
-from mpm_verify.cases.column.claims import FinishedRun, values
+from mpm_verify.cases.column.claims import values
+from mpm_verify.cases.column.records import FinishedRun
 from mpm_verify.cases.column.run import ColumnRun, ColumnStudy
 from mpm_verify.cases.harness.checks import Check, Way
 from mpm_verify.solver.plugins import MATERIALS, METHODS, SMOOTHINGS, create, load, split

@@ -2,20 +2,20 @@
 
 A claim is about one axis: particles per cell, damping, smoothing, material. It is held against runs that differ in that
 axis alone. What "little" and "close" mean is said here, since the paper gives no numbers; None is the answer where our
-runs, or what is known of the experiment, cannot tell. The sentences are in reports/sentences/column.py.
+runs, or what is known of the experiment, cannot tell. Each has its answers by all measures of the length that it hangs
+on (records.py). The sentences are in reports/sentences/column.py.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
-from enum import StrEnum
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from mpm_verify.cases.column.experiment import Band, Experiment, experiment
+from mpm_verify.cases.column.records import HANGS, MEASURES, Claim, ClaimCode, Compared, FinishedRun
 from mpm_verify.cases.column.run import ColumnRun
-from mpm_verify.solver.state import Floats
 
 LITTLE = 0.01  # of the initial potential energy: what can be seen on a figure of it
 MARKED = 0.10  # of the largest kinetic energy
@@ -26,73 +26,6 @@ NEAR = 0.10  # of the experiment's band
 EARLY = 0.17  # s: until then the paper's materials differ
 
 
-class ClaimCode(StrEnum):
-    """A sentence of the paper, by the axis that it is about."""
-
-    FRONT_OVER = "front_over"  # ppc, Figure 4
-    HEIGHT_RISES = "height_rises"
-    HEIGHT_UNDER_WITH_ONE = "height_under_with_one"
-    HEIGHT_NEAR_WITH_MORE = "height_near_with_more"
-    FRONT_FALLS = "front_falls"  # damping, Figures 5 and 6
-    FRONT_CLOSER = "front_closer"
-    POTENTIAL_KEPT = "potential_kept"
-    KINETIC_CHANGED = "kinetic_changed"
-    VOLUMETRIC_FRONT = "volumetric_front"  # smoothing, Figure 7
-    VOLUMETRIC_HEIGHT = "volumetric_height"
-    DEVIATORIC_FRONT = "deviatoric_front"
-    MATERIALS_CLOSE = "materials_close"  # material, Figure 8
-    SAND_STIFFER = "sand_stiffer"
-    BOTH_NEAR = "both_near"
-    SAND_EARLY = "sand_early"
-    SAND_LATE = "sand_late"
-
-
-@dataclass(frozen=True)
-class FinishedRun:
-    """A run that came to its end, its numbers and its curves; without them where they cannot be read."""
-
-    run: ColumnRun
-    values: dict[str, float]
-    curves: dict[str, Floats]
-
-    @property
-    def front(self) -> float:
-        """Front at the end, m."""
-        return self.values["front_99"]
-
-    @property
-    def height(self) -> float:
-        """Height at the wall at the end, m."""
-        return self.values["height"]
-
-
-@dataclass(frozen=True)
-class Compared:
-    """A run that a claim compares: its value on the axis, its front and its height at the end [m], its crowding."""
-
-    value: Any
-    front: float
-    height: float
-    crowding: float
-
-
-@dataclass(frozen=True)
-class Claim:
-    """A sentence of the paper, whether runs reproduce it, and with what numbers.
-
-    `runs`: those that are compared, in the order of the sentence; `known`: the experiment; `numbers`: what was measured
-    beside fronts and heights, and the bounds it was held against; `shared`: values of the runs on the other axes.
-    """
-
-    code: ClaimCode
-    axis: str
-    reproduced: bool | None
-    runs: tuple[Compared, ...]
-    known: Experiment
-    numbers: dict[str, float] = field(default_factory=dict)
-    shared: dict[str, Any] = field(default_factory=dict)
-
-
 def claims(ran: Sequence[FinishedRun], axes: Sequence[str]) -> list[Claim]:
     """Claims on every axis that the paper speaks of, one list a family of runs."""
     found = []
@@ -101,8 +34,21 @@ def claims(ran: Sequence[FinishedRun], axes: Sequence[str]) -> list[Claim]:
             known = experiment(family[0].run)
             shared = values(family[0].run, [other for other in axes if other != axis])
             if axis in SPEAK and known and len(family) > 1:
-                found += [replace(claim, shared=shared) for claim in SPEAK[axis](family, known)]
+                found += [replace(claim, shared=shared) for claim in by_all(SPEAK[axis], family, known)]
     return found
+
+
+def by_all(speak: "Speaker", family: Sequence[FinishedRun], known: Experiment) -> list[Claim]:
+    """Claims by the usual measures, each with its answers by all that every run of the family has."""
+    answers = {}
+    for kind, names in MEASURES.items():
+        for name in (name for name in names if all(name in one.values for one in family)):
+            told = speak([replace(one, **{f"{kind}_by": name}) for one in family], known)  # type: ignore[arg-type]
+            answers[name] = {claim.code: claim.reproduced for claim in told if claim.code in HANGS[kind]}
+    return [
+        replace(claim, by={name: by[claim.code] for name, by in answers.items() if claim.code in by})
+        for claim in speak(family, known)
+    ]
 
 
 def families(ran: Sequence[FinishedRun], axis: str) -> list[list[FinishedRun]]:
@@ -123,7 +69,9 @@ def values(run: ColumnRun, axes: Sequence[str]) -> dict[str, Any]:
 
 def compared(axis: str, *runs: FinishedRun) -> tuple[Compared, ...]:
     """Runs as a claim on the axis tells them."""
-    return tuple(Compared(getattr(one.run, axis), one.front, one.height, one.values["crowding"]) for one in runs)
+    return tuple(
+        Compared(getattr(one.run, axis), one.front, one.height, one.values["crowding"], one.lengths) for one in runs
+    )
 
 
 def rises(numbers: Sequence[float]) -> bool:
@@ -141,7 +89,7 @@ def of_particles(family: Sequence[FinishedRun], known: Experiment) -> list[Claim
     """Claims of Figure 4."""
     few = sorted(family, key=lambda one: one.run.ppc)
     first, last = few[0], few[-1]
-    every, creep = compared("ppc", *few), max((one.values["creep"] for one in few), key=abs)
+    every, creep = compared("ppc", *few), max((one.creep for one in few), key=abs)
     rising = settled(few, rises([one.height for one in few]))
     under = beyond(first.height, known.height) < 0 if first.run.ppc == 1 else None
     return [
@@ -156,9 +104,7 @@ def of_particles(family: Sequence[FinishedRun], known: Experiment) -> list[Claim
 
 def settled(family: Sequence[FinishedRun], found: bool) -> bool | None:
     """Whether heights rise; None where one may still fall below the one before."""
-    falls = [
-        later.height - earlier.height < later.values["creep"] * later.height for earlier, later in pairwise(family)
-    ]
+    falls = [later.height - earlier.height < later.creep * later.height for earlier, later in pairwise(family)]
     return None if found and any(falls) else found
 
 
@@ -235,8 +181,8 @@ def of_material(family: Sequence[FinishedRun], known: Experiment) -> list[Claim]
 
 def apart_at(sand: FinishedRun, plain: FinishedRun) -> tuple[float, float]:
     """Distance of the fronts: at most until EARLY, and at the end [m]."""
-    t, front = sand.curves["t"], sand.curves["front_99"]
-    difference = front - np.interp(t, plain.curves["t"], plain.curves["front_99"])
+    t, front = sand.curves["t"], sand.curves[sand.front_by]
+    difference = front - np.interp(t, plain.curves["t"], plain.curves[plain.front_by])
     return float(np.abs(difference[t <= EARLY]).max(initial=0.0)), abs(float(difference[-1]))
 
 

@@ -9,8 +9,9 @@ import numpy as np
 
 from mpm_verify.cases.column.aspect import Line, lines
 from mpm_verify.cases.column.checks import checks
-from mpm_verify.cases.column.claims import CROWDED, Claim, FinishedRun, claims
+from mpm_verify.cases.column.claims import CROWDED, claims
 from mpm_verify.cases.column.experiment import experiment
+from mpm_verify.cases.column.records import Claim, FinishedRun
 from mpm_verify.cases.column.refined import Refined, Scattered, refinements, scatter
 from mpm_verify.cases.column.run import ColumnResult, ColumnStudy
 from mpm_verify.cases.harness.checks import Check, Examination, Remark
@@ -91,13 +92,14 @@ def findings(
     if said:
         held = [claim.reproduced for claim in said]
         counts = {"reproduced": held.count(True), "not_reproduced": held.count(False), "open": held.count(None)}
+        counts["hang"] = sum(claim.hangs for claim in said)
         found.append(Remark(ColumnRemark.CLAIMS, counts))
     crowded = [one for one in ran if one.values["crowding"] > CROWDED]
     if crowded:
         found.append(Remark(ColumnRemark.CROWDED, {"runs": len(crowded), "limit": CROWDED}))
     if len(ran) == 1:
         v = ran[0].values
-        found.append(Remark(ColumnRemark.ALONE, {"front": ran[0].front, "height": ran[0].height, "lost": v["lost"]}))
+        found.append(Remark(ColumnRemark.ALONE, {**ran[0].lengths, "lost": v["lost"]}))
     if any(experiment(one.run) for one in ran):
         found.append(Remark(ColumnRemark.BANDS))
     return [*found, Remark(ColumnRemark.UNREAD, {"files": ", ".join(unread)})] if unread else found

@@ -1,19 +1,23 @@
 """Measurements of a collapsing column: front, toe and height of the heap, energies, momenta, and what is scaled.
 
 Front: the distance from the wall within which 99 or 99.9 % of the mass lies; single particles fly further. Toe: the
-far end of the heap that is connected to the wall, in squares of a seventh of the width, by sides or corners.
+far end of the heap that is connected to the wall, in squares of a seventh of the width, by sides or corners. In a
+triangle the two fronts are at 0.9 and 0.968 of the toe.
 Height: below it lie 99 % of the mass of the heap next to the wall, in a strip of a seventh of the width; the profile is
-the same for each strip. A seventh on any grid, so that grids can be compared, unless cells are wider. Crowding: the
+the same for each strip. A seventh on any grid, so that grids can be compared, unless cells are wider. The height by fit
+is that at the wall of a line through the first width of the levelled surface (heap.py), which a sliver that hangs at
+the wall does not lift. Crowding: the
 volume V = J V0 that particles keep, over the space in which they are, within the heap. It should be 1; where particles
 drift closer than their det F knows, or apart, it is not, and the heap is smaller, or larger, than its material.
+On the grid: half the sum of m v^2 over the nodes, without the velocities of particles that no node sees.
 """
 
 from math import cos, inf, radians, sin, sqrt
 from typing import Any
 
 import numpy as np
-from scipy import ndimage
 
+from mpm_verify.cases.column.heap import at_wall, by_volume, connected, crowding, levelled, quantile, surface
 from mpm_verify.cases.column.run import AT_REST, ColumnRun
 from mpm_verify.solver.energy_budget import Budget, kinetic, residual
 from mpm_verify.solver.friction import FrictionalWalls
@@ -21,22 +25,21 @@ from mpm_verify.solver.model import Model, Observer
 from mpm_verify.solver.state import Floats
 
 LOOKS = 200  # rows of a run
-FRACTION = 0.99  # of the mass of a strip, below its height
 SLACK = 1e-6  # of the largest stress: what round-off may pass the strength by
 
 
 class Measure(Observer):
-    """Observer that takes a row of numbers and a profile at each look, with an energy budget of the steps between.
+    """Observer that takes a row of numbers and profiles at each look, with an energy budget of the steps between.
 
     `run` says which way the heap runs.
     """
 
     def __init__(self, run: ColumnRun, model: Model) -> None:
         self.run, self.end = run, float(model.grid.upper[0])
-        self.strips = round(self.end / run.strip)
+        self.strips, self.near = round(self.end / run.strip), round(run.width / run.strip)
         self.first: dict[str, float] = {}
         self.rows: list[dict[str, float]] = []
-        self.profiles: list[Floats] = []
+        self.profiles: list[dict[str, Floats]] = []
         self.momentum = momentum(model)
         self.plastic, self.worked = 0.0, worked(model)
         self.steps = round(run.duration / model.dt)
@@ -56,8 +59,8 @@ class Measure(Observer):
     def look(self, model: Model) -> None:
         """Measure now: one row."""
         p, x = model.particles, self.positions(model)
-        heap = connected(x, self.run.strip)
-        profile = surface(x[heap], p.m[heap], self.run.strip, self.strips)
+        V, heap = p.V0 * p.J, connected(x, self.run.strip)
+        profiles = self.surfaces(x[heap], p.m[heap], V[heap])
         terms = self.budget.terms(model)
         self.first = self.first or terms
         moved = momentum(model) - self.momentum
@@ -67,7 +70,8 @@ class Measure(Observer):
             "front_99": quantile(x[:, 0], p.m, 0.99),
             "front_999": quantile(x[:, 0], p.m, 0.999),
             "toe": float(x[heap, 0].max()),
-            "height": float(profile[0]),
+            "height": float(profiles["profile"][0]),
+            "height_fit": at_wall(profiles["profile_levelled"][: self.near], self.run.strip),
             **terms,
             "friction": model.walls.taken if isinstance(model.walls, FrictionalWalls) else 0.0,
             **self.split(model, terms["work"]),
@@ -78,12 +82,21 @@ class Measure(Observer):
             "fastest": float(np.hypot(*p.v.T).max()),
             **strength(model),
             **scaled(model),
-            "crowding": crowding(x, p.V0 * p.J, self.run.strip),
+            "crowding": crowding(x, V, self.run.strip),
             **books(model),
         }
         row["courant"] = model.dt / model.grid.dx * (model.material.wave_speed(row["largest_s"]) + row["fastest"])
         self.rows.append(row)
-        self.profiles.append(profile)
+        self.profiles.append(profiles)
+
+    def surfaces(self, x: Floats, m: Floats, V: Floats) -> dict[str, Floats]:
+        """Surfaces (strips,) of the heap by name: the recorded one, the levelled one, and that by volume."""
+        of = self.run.strip, self.strips
+        return {
+            "profile": surface(x, m, *of),
+            "profile_levelled": levelled(x, m, V, *of),
+            "profile_volume": by_volume(x, V, *of),
+        }
 
     def split(self, model: Model, work: float) -> dict[str, float]:
         """Elastic and plastic part of the work of stress, and what pooling has taken of it.
@@ -103,10 +116,9 @@ class Measure(Observer):
         return {"elastic": work - self.plastic - pooled, "plastic": self.plastic, "pooled": pooled}
 
     def curves(self) -> dict[str, Floats]:
-        """Columns of the rows, and `profile` (T,strips)."""
-        names = self.rows[0] if self.rows else ()
-        columns = {name: np.array([row[name] for row in self.rows]) for name in names}
-        return {**columns, "profile": np.array(self.profiles).reshape(len(self.rows), -1)}
+        """Columns of the rows, and profiles (T,strips)."""
+        both: Any = [{**row, **profiles} for row, profiles in zip(self.rows, self.profiles, strict=True)]
+        return {name: np.array([one[name] for one in both]) for name in (both[0] if both else ())}
 
 
 def due(step: int, steps: int, times: int) -> bool:
@@ -120,36 +132,6 @@ def momentum(model: Model) -> Floats:
     return total
 
 
-def quantile(x: Floats, m: Floats, fraction: float) -> float:
-    """Position below which this fraction of the mass lies."""
-    order = np.argsort(x)
-    below = np.cumsum(m[order])
-    return float(x[order[np.searchsorted(below, fraction * below[-1])]])
-
-
-def connected(x: Floats, side: float) -> Any:
-    """Mask of the particles (P,) of the heap that reaches the wall, by squares that touch."""
-    cell = np.maximum(np.floor(x / side).astype(int), 0)
-    there = np.zeros(cell.max(axis=0) + 1, dtype=bool)
-    there[cell[:, 0], cell[:, 1]] = True
-    labels, _ = ndimage.label(there, np.ones((3, 3)))
-    number = labels[cell[:, 0], cell[:, 1]]
-    at_wall = number[cell[:, 0] == cell[:, 0].min()]
-    return number == np.bincount(at_wall).argmax()
-
-
-def surface(x: Floats, m: Floats, strip: float, strips: int) -> Floats:
-    """Height (strips,) below which FRACTION of the mass of each strip lies; zero where there is none."""
-    number, heights = np.clip((x[:, 0] / strip).astype(int), 0, strips - 1), np.zeros(strips)
-    order = np.argsort(number, kind="stable")
-    bounds = np.searchsorted(number[order], np.arange(strips + 1))
-    for k in range(strips):
-        rows = order[bounds[k] : bounds[k + 1]]
-        if len(rows):
-            heights[k] = quantile(x[rows, 1], m[rows], FRACTION)
-    return heights
-
-
 def worked(model: Model) -> Floats:
     """Plastic work per volume of each particle (P,), in the initial order, of a material that counts it; else zero."""
     memory = model.material.memory
@@ -157,15 +139,6 @@ def worked(model: Model) -> Floats:
         return np.zeros(len(model.particles))
     found: Floats = model.particles.in_initial_order("history")[:, memory.index("work_p")]
     return found
-
-
-def crowding(x: Floats, V: Floats, side: float) -> float:
-    """Volume over space, in squares that have particles and such a square above them; NaN where there are none."""
-    cell = np.maximum(np.floor(x / side + 1e-9).astype(int), 0)
-    volume = np.zeros((cell[:, 0].max() + 1, cell[:, 1].max() + 2))
-    np.add.at(volume, (cell[:, 0], cell[:, 1]), V)
-    within = (volume[:, :-1] > 0) & (volume[:, 1:] > 0)
-    return float(volume[:, :-1][within].mean() / side**2) if within.any() else float("nan")
 
 
 def strength(model: Model) -> dict[str, float]:
@@ -229,13 +202,15 @@ def final(run: ColumnRun, curves: dict[str, Floats]) -> dict[str, float]:
 
     `rest`: since when the kinetic energy of the grid is below AT_REST of the potential energy; inf if it is not, and of
     a run too short for a column to have fallen, sqrt(h0 / g).
-    `area`: under the final profile, over that of the column: 1 and what it has dilated, or less where it has shrunk.
+    `area`: under the final profile, over that of the column: 1 and what it has dilated, or less where it has shrunk;
+    some hundredths too low, as that profile is. `area_levelled`: under the levelled one, which is not.
     Fractions of the initial potential energy, largest at any time: `unbalanced`, of the budget; `misworked`, between
     the work of the material and that of the forces; `lost` by the method; `plastic_falls`, that plastic work gave back.
     `booked`: area over the mean volume ratio divided by crowding, 1 where the measures of the heap agree.
-    `creep`: how much the height still changed in the last fifth of the time, as a fraction of it.
+    `creep`: how much the height still changed in the last fifth of the time, as a fraction of it; `creep_fit`: of that
+    by fit.
     """
-    values = {name: float(column[-1]) for name, column in curves.items() if name != "profile"}
+    values = {name: float(column[-1]) for name, column in curves.items() if column.ndim == 1}
     for name in (
         "outside",
         "beyond",
@@ -252,16 +227,18 @@ def final(run: ColumnRun, curves: dict[str, Floats]) -> dict[str, float]:
     first = float(curves["potential"][0])
     moving = np.flatnonzero(curves["on_grid"] > AT_REST * first)
     last = int(moving[-1]) if len(moving) else 0
-    t, height = curves["t"], curves["height"]
+    t = curves["t"]
     fallen = t[-1] >= sqrt(run.height / run.g)
     values["rest"] = float(t[last + 1]) if fallen and last + 1 < len(t) else inf
-    values["creep"] = float(height[t >= 0.8 * t[-1]][0] - height[-1]) / max(float(height[-1]), 1e-300)
+    for creep, height in {"creep": curves["height"], "creep_fit": curves["height_fit"]}.items():
+        values[creep] = float(height[t >= 0.8 * t[-1]][0] - height[-1]) / max(float(height[-1]), 1e-300)
     plastic = curves["plastic"]
     values["unbalanced"] = float(np.abs(curves["residual"]).max()) / first
     values["misworked"] = float(np.abs(curves["convection"]).max()) / first
     values["lost"] = float(np.abs(curves["transfer"] + curves["convection"]).max()) / first
     values["plastic_falls"] = float((np.maximum.accumulate(plastic) - plastic).max()) / first
     values["run_out"] = values["front_99"] / run.width - 1
-    values["area"] = float(curves["profile"][-1].sum()) * run.strip / (run.width * run.height)
+    for area, profile in {"area": "profile", "area_levelled": "profile_levelled"}.items():
+        values[area] = float(curves[profile][-1].sum()) * run.strip / (run.width * run.height)
     values["booked"] = values["area"] * values["crowding"] / values["volume"]
     return values

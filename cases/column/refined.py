@@ -6,11 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from mpm_verify.cases.column.claims import FinishedRun, families, values
+from mpm_verify.cases.column.claims import families, values
+from mpm_verify.cases.column.records import MEASURES, FinishedRun
 from mpm_verify.cases.judging.richardson import Extrapolation, extrapolate
 
 REFINES = {"cells": lambda run: 1 / run.cells, "courant": lambda run: run.courant, "ppc": lambda run: run.ppc**-0.5}
-QUANTITIES = ("front_99", "front_999", "toe", "height")
+QUANTITIES = tuple(name for names in MEASURES.values() for name in names)
 
 
 @dataclass(frozen=True)
@@ -46,7 +47,7 @@ def refinements(ran: Sequence[FinishedRun], axes: Sequence[str]) -> list[Refined
         for family in families(ran, axis) if axis in REFINES else ():
             levels = sorted(family, key=lambda one: REFINES[axis](one.run))
             shared = values(levels[0].run, [other for other in axes if other != axis])
-            for name in QUANTITIES if len(levels) > 2 else ():
+            for name in known(levels) if len(levels) > 2 else ():
                 h, f = [REFINES[axis](one.run) for one in levels], [one.values[name] for one in levels]
                 triples = tuple(extrapolate(h[k : k + 3], f[k : k + 3]) for k in range(len(h) - 2))
                 shown = tuple((getattr(one.run, axis), v) for one, v in zip(levels, f, strict=True))
@@ -59,8 +60,13 @@ def scatter(ran: Sequence[FinishedRun], axes: Sequence[str]) -> list[Scattered]:
     found = []
     for family in families(ran, "offset") if "offset" in axes else ():
         shared = values(family[0].run, [axis for axis in axes if axis != "offset"])
-        for name in QUANTITIES if len(family) > 2 else ():
+        for name in known(family) if len(family) > 2 else ():
             sample = np.array([one.values[name] for one in family])
             spread = float(sample.std(ddof=1)), float(np.ptp(sample))
             found.append(Scattered(shared, name, len(sample), float(sample.mean()), *spread))
     return found
+
+
+def known(family: Sequence[FinishedRun]) -> list[str]:
+    """Quantities that all runs have: those stored before a measure was made are without it."""
+    return [name for name in QUANTITIES if all(name in one.values for one in family)]

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from mpm_verify.cases.column.exam import ColumnAnalysis
@@ -21,8 +22,12 @@ MEASURED = {  # measured numbers that have the name of a parameter: their names 
 
 
 def tables(analysis: ColumnAnalysis, store: Store, folder: Path) -> None:
-    """Write runs.csv: parameters and numbers of each run; curves.csv: each curve of each run, front to residual."""
-    rows, curves = [], []
+    """Write numbers of the runs.
+
+    runs.csv: parameters and numbers of each run; curves.csv: each curve of each run, front to residual; profiles.csv:
+    the surfaces of each run at its end, by strip.
+    """
+    rows, curves, profiles = [], [], []
     for run in analysis.study.runs:
         result = analysis.results.get(run.digest)
         if result:
@@ -30,14 +35,21 @@ def tables(analysis: ColumnAnalysis, store: Store, folder: Path) -> None:
             failure = failures.cause(result.failure) if result.failure else ""
             head = {"digest": run.digest, "status": result.status, "failure": failure}
             rows.append(joined(head, parameters, measured(result.values)))
-            columns = {name: values for name, values in read_curves(store, result).items() if values.ndim == 1}
-            if not columns:
+            read = read_curves(store, result)
+            if not read:
                 continue
-            named = {axis: words.value(axis, getattr(run, axis)) for axis in analysis.study.axes}
-            curves.append(pd.DataFrame(joined({"digest": run.digest}, named, measured(columns))))
+            named = {"digest": run.digest} | {
+                axis: words.value(axis, getattr(run, axis)) for axis in analysis.study.axes
+            }
+            columns = {name: values for name, values in read.items() if values.ndim == 1}
+            curves.append(pd.DataFrame(joined(named, measured(columns))))
+            ended = {name: values[-1] for name, values in read.items() if values.ndim == 2}
+            middles = (np.arange(len(ended["profile"])) + 0.5) * run.strip
+            profiles.append(pd.DataFrame(joined(named, {"x": middles}, ended)))
     pd.DataFrame(rows).to_csv(folder / "runs.csv", index=False)
-    if curves:
-        pd.concat(curves).to_csv(folder / "curves.csv", index=False, float_format="%.7g")
+    for name, parts in {"curves": curves, "profiles": profiles}.items():
+        if parts:
+            pd.concat(parts).to_csv(folder / f"{name}.csv", index=False, float_format="%.7g")
 
 
 def measured(values: Mapping[str, Any]) -> dict[str, Any]:

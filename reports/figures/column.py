@@ -13,8 +13,8 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from mpm_verify.cases.column.claims import FinishedRun
 from mpm_verify.cases.column.experiment import Experiment, experiment
+from mpm_verify.cases.column.records import FinishedRun
 from mpm_verify.cases.column.refined import Refined
 from mpm_verify.cases.column.run import ColumnRun
 from mpm_verify.reports.figures import style
@@ -28,6 +28,8 @@ SAND = "#e8d5a3"
 DARK, PALE = "#4a3728", "#d9bf86"  # bands of sand, as in the experiment
 BANDS = 10  # of the column's height
 STROKES: tuple[Any, ...] = ("-", "--", ":", "-.")
+FRONTS = {"front_99": "front, 99 % of the mass [m]", "toe": "toe [m]"}
+PROFILES = {"profile": "height, 99 % of the mass [m]", "profile_volume": "volume over width [m]"}
 TIME = "time / $\\sqrt{h_0/g}$"
 Labels = Sequence[str]
 
@@ -39,54 +41,79 @@ def shared_experiment(ran: Sequence[FinishedRun]) -> Experiment | None:
 
 
 def fronts(ran: Sequence[FinishedRun], labels: Labels) -> Figure:
-    """Front, within which 99 % of the mass lies, against time."""
+    """Front, within which 99 % of the mass lies, and toe against time."""
+    known, tau = shared_experiment(ran), ran[0].run.tau
+    last = max(float(one.curves["t"][-1]) for one in ran) / tau
     with rc_context(style.RC):
-        figure, axes = style.panel(SIZE, xlabel=TIME, ylabel="front, 99 % of the mass [m]")
-        known, run = shared_experiment(ran), ran[0].run
-        last = max(float(one.curves["t"][-1]) for one in ran) / run.tau
-        if known:
-            low, high = known.front
-            axes.add_patch(Rectangle((known.rest[0], low), last - known.rest[0], high - low, color=SAND, linewidth=0))
-            for time in known.rest:
-                axes.plot([time, time], [low, high], color=style.GREY, linewidth=1, linestyle=(0, (2, 2)))
-            axes.annotate("experiment, at rest", (last, low), xytext=(-4, -4), textcoords="offset points", ha="right",
-                          va="top", color=style.GREY, fontsize=10)  # fmt: skip
-        for number, (one, label) in enumerate(zip(ran, labels, strict=True)):
-            axes.plot(one.curves["t"] / one.run.tau, one.curves["front_99"], label=label, **stroke(number))
-        axes.set(xlim=(0, last), ylim=(0, None))
+        figure, panels = stacked(FRONTS)
+        for axes, name in zip(panels, FRONTS, strict=True):
+            if known:
+                resting(axes, known, last)
+            for number, (one, label) in enumerate(zip(ran, labels, strict=True)):
+                axes.plot(one.curves["t"] / one.run.tau, one.curves[name], label=label, **stroke(number))
+            axes.set(xlim=(0, last), ylim=(0, None))
+        panels[-1].set_xlabel(TIME)
         legend(figure, labels)
     return figure
+
+
+def resting(axes: Axes, known: Experiment, last: float) -> None:
+    """Shade where the experiment's front rests until the `last` time, with dashes at the times of that."""
+    low, high = known.front
+    axes.add_patch(Rectangle((known.rest[0], low), last - known.rest[0], high - low, color=SAND, linewidth=0))
+    for time in known.rest:
+        axes.plot([time, time], [low, high], color=style.GREY, linewidth=1, linestyle=(0, (2, 2)))
+    axes.annotate("experiment, at rest", (last, low), xytext=(-4, -4), textcoords="offset points", ha="right",
+                  va="top", color=style.GREY, fontsize=10)  # fmt: skip
+
+
+def stacked(names: Mapping[str, str]) -> tuple[Figure, Sequence[Axes]]:
+    """Figure with a panel for each name, one above the other, on one axis of x."""
+    figure = Figure(figsize=(WIDE, 1.0 + 3.2 * len(names)), layout="constrained")
+    panels = figure.subplots(len(names), 1, squeeze=False, sharex=True)[:, 0]
+    for axes, name in zip(panels, names.values(), strict=True):
+        axes.set_ylabel(name)
+    return figure, list(panels)
 
 
 def profiles(ran: Sequence[FinishedRun], labels: Labels) -> Figure:
-    """Surfaces at the end, the column there was, and what is known of the experiment's deposit."""
+    """Surfaces at the end, by mass and by volume, the column there was, and what is known of the experiment."""
+    names = {name: text for name, text in PROFILES.items() if all(name in one.curves for one in ran)}
+    run, known = ran[0].run, shared_experiment(ran)
+    far = 1.05 * max(one.values["front_999"] for one in ran)
+    tall = 1.15 * max(float(one.curves[name][-1].max()) for one in ran for name in names)
+    tall = max(tall, 1.1 * known.height[1]) if known else tall
     with rc_context(style.RC):
-        figure, axes = style.panel(SIZE, xlabel="distance from the wall [m]", ylabel="height [m]")
-        run, known = ran[0].run, shared_experiment(ran)
-        far = 1.05 * max(one.values["front_999"] for one in ran)
-        tall = 1.15 * max(float(one.curves["profile"][-1].max()) for one in ran)
-        if known:
-            tall = max(tall, 1.1 * known.height[1])
-            axes.axvspan(*known.front, color=SAND, linewidth=0)
-            axes.add_patch(Rectangle((0, known.height[0]), 0.25 * run.width, known.height[1] - known.height[0],
-                                     color=SAND, linewidth=0))  # fmt: skip
-            axes.annotate("experiment:\nfront", (sum(known.front) / 2, tall), xytext=(0, -4), va="top", ha="center",
-                          textcoords="offset points", color=style.GREY, fontsize=10)  # fmt: skip
-            beside = (1.1 * run.width, sum(known.height) / 2)
-            axes.annotate("its height at the wall", beside, va="center", color=style.GREY, fontsize=10)
-        axes.plot([run.width, run.width], [0, tall], color=style.GREY, linewidth=1, linestyle=(0, (2, 2)))
-        for number, (one, label) in enumerate(zip(ran, labels, strict=True)):
-            height = one.curves["profile"][-1]
-            axes.plot((np.arange(len(height)) + 0.5) * one.run.strip, height, label=label, **stroke(number))
-        axes.set(xlim=(0, far), ylim=(0, tall))
+        figure, panels = stacked(names)
+        for axes, name in zip(panels, names, strict=True):
+            if known:
+                deposit(axes, run, known, tall, axes is panels[0])
+            axes.plot([run.width, run.width], [0, tall], color=style.GREY, linewidth=1, linestyle=(0, (2, 2)))
+            for number, (one, label) in enumerate(zip(ran, labels, strict=True)):
+                height = one.curves[name][-1]
+                axes.plot((np.arange(len(height)) + 0.5) * one.run.strip, height, label=label, **stroke(number))
+            axes.set(xlim=(0, far), ylim=(0, tall))
+        panels[-1].set_xlabel("distance from the wall [m]")
         legend(figure, labels)
     return figure
+
+
+def deposit(axes: Axes, run: ColumnRun, known: Experiment, tall: float, named: bool) -> None:
+    """Shade where the experiment's front came to rest, and its height at the wall; with names where it is `named`."""
+    axes.axvspan(*known.front, color=SAND, linewidth=0)
+    axes.add_patch(Rectangle((0, known.height[0]), 0.25 * run.width, known.height[1] - known.height[0],
+                             color=SAND, linewidth=0))  # fmt: skip
+    if named:
+        axes.annotate("experiment:\nfront", (sum(known.front) / 2, tall), xytext=(0, -4), va="top", ha="center",
+                      textcoords="offset points", color=style.GREY, fontsize=10)  # fmt: skip
+        beside = (1.1 * run.width, sum(known.height) / 2)
+        axes.annotate("its height at the wall", beside, va="center", color=style.GREY, fontsize=10)
 
 
 def energy(ran: Sequence[FinishedRun], labels: Labels, name: str) -> Figure:
     """Energy of each run over the initial potential energy."""
     with rc_context(style.RC):
-        figure, axes = style.panel(SIZE, xlabel=TIME, ylabel=f"{name} energy / initial potential energy")
+        figure, axes = style.panel(SIZE, xlabel=TIME, ylabel=f"{words.ENERGIES[name]}\n/ initial potential energy")
         for number, (one, label) in enumerate(zip(ran, labels, strict=True)):
             part = one.curves[name] / one.curves["potential"][0]
             axes.plot(one.curves["t"] / one.run.tau, part, label=label, **stroke(number))

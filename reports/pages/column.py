@@ -1,10 +1,10 @@
 """Page of a study of the column: runs, the paper's sentences, fronts and profiles, energies, refinement, films."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from mpm_verify.cases.column.claims import FinishedRun
 from mpm_verify.cases.column.exam import ColumnAnalysis, curves
+from mpm_verify.cases.column.records import MEASURES, FinishedRun
 from mpm_verify.cases.column.run import ColumnResult, ColumnRun
 from mpm_verify.cases.harness.store import Store, StoreError
 from mpm_verify.reports.components.examined import Section, checks_table, render
@@ -61,35 +61,33 @@ def sections(analysis: ColumnAnalysis, store: Store, add: Add) -> Sequence[Secti
 
 def summary(analysis: ColumnAnalysis, add: Add) -> Section:
     """Section of what each run came to."""
-    head = ("run", "front 99 %", "99.9 %", "toe", "height", "rest [√(h₀/g)]", "height falls", "area", "outcome")
+    head = ("run", "front 99 %", "99.9 %", "toe", "height", "by fit", "rest [√(h₀/g)]", "height falls", "area",
+            "outcome")  # fmt: skip
     rows = []
     for run in analysis.study.runs:
         result = analysis.results.get(run.digest)
         rows.append((words.label(analysis.study, run), *numbers(run, result)))
-    notes = (
-        "Front and toe are distances from the wall in m: 99 or 99.9 % of the mass lie within the front, and the heap "
-        "that is connected to the wall ends at its toe. The height is that of the heap next to the wall; “height "
-        "falls” is by how much it still fell in the last fifth of the time. A run rests once the kinetic energy that "
-        "the grid sees stays below a ten-thousandth of the initial potential energy; grains of the experiment came "
-        "to rest after 2.5 to 3.3 √(h₀/g). Area: that below the surface over that of the column; as the surface is "
-        "that of 99 % of the mass, by its centres, it is a little too low."
-    )
-    return Section("runs", "Runs", [*analysis.study.words, notes], tables=[
+    return Section("runs", "Runs", [*analysis.study.words, *words.LENGTHS], tables=[
         Table("Results of the runs", head, tuple(rows), texts=("outcome",))])  # fmt: skip
 
 
 def numbers(run: ColumnRun, result: ColumnResult | None) -> tuple[str, ...]:
     """Numbers of one run, as text."""
     if result is None:
-        return (*[DASH] * 7, "not run")
+        return (*[DASH] * 8, "not run")
     if result.failure:
         at = result.failure.step * result.dt
         where = f"failed at {at:.3f} s (step {result.failure.step}): {failures.cause(result.failure)}"
-        return (*[DASH] * 7, where)
+        return (*[DASH] * 8, where)
     v = result.values
     rest = f"{v['rest'] / run.tau:.2f}" if v["rest"] < float("inf") else "not yet"
-    lengths = (f"{v[name]:.3f}" for name in ("front_99", "front_999", "toe", "height"))
-    return (*lengths, rest, percent(v["creep"]), f"{v['area']:.2f}", "finished")
+    lengths = (written(v, name) for names in MEASURES.values() for name in names)
+    return (*lengths, rest, percent(v["creep"]), written(v, "area_levelled"), "finished")
+
+
+def written(values: Mapping[str, float], name: str) -> str:
+    """Number of a run; a dash where it was stored before that was measured."""
+    return f"{values[name]:.3f}" if name in values else DASH
 
 
 def said(analysis: ColumnAnalysis) -> Section:
@@ -112,10 +110,13 @@ def said(analysis: ColumnAnalysis) -> Section:
 def motion(ran: Sequence[FinishedRun], labels: Sequence[str], add: Add) -> Section:
     """Section of fronts and final profiles."""
     return Section("motion", "Run-out", figures=[
-        (add("front", draw.fronts(ran, labels), "Front against time; its final values are in the table of runs."),
-         "Front against normalised time. Shaded: where the experiment's front rests; dashes: the times of that."),
+        (add("front", draw.fronts(ran, labels), "Front and toe against time; final values are in the table of runs."),
+         "Front and toe against normalised time. Shaded: where the experiment's front rests; dashes: the times of "
+         "that."),
         (add("profiles", draw.profiles(ran, labels), "Surface of the heap at the end of each run."),
-         "The surface at the end. Shaded: front and height of the experiment; dashed: the column's free side."),
+         "The end, strip by strip: the height below which 99 % of the mass lies, and the volume det F V₀ over the "
+         "width, which is above it where particles are crowded. Shaded: front and height of the experiment; dashed: "
+         "the column's free side."),
     ])  # fmt: skip
 
 
@@ -132,9 +133,9 @@ def budget(ran: Sequence[FinishedRun], labels: Sequence[str], add: Add) -> Secti
 def energy(ran: Sequence[FinishedRun], labels: Sequence[str], add: Add) -> Section:
     """Section of the energies of all runs."""
     figures = [
-        (add(name, draw.energy(ran, labels, name), f"{name.capitalize()} energy of each run over time."),
-         f"The paper's Figure 6: {name} energy.")
-        for name in ("potential", "kinetic")
+        (add(name, draw.energy(ran, labels, name), f"{text.capitalize()} of each run over time."),
+         f"The paper's Figure 6: {text}.")
+        for name, text in words.ENERGIES.items()
     ]  # fmt: skip
     rubs = any(one.values.get("friction") for one in ran)
     pools = any(one.run.pooling for one in ran)
@@ -150,7 +151,8 @@ def energy(ran: Sequence[FinishedRun], labels: Sequence[str], add: Add) -> Secti
         rows.append((label, *(f"{100 * part:.2f}" for part in parts), f"{v['unbalanced']:.1e}"))
     text = (
         "Kinetic energy of the particles includes velocities that the grid does not see and that move nothing; at rest "
-        "it is all that is left. Two columns are what the method loses: transfer, on the way of velocities between "
+        "it is all that is left. That on the grid is half the sum of m v² over the nodes. "
+        "Two columns are what the method loses: transfer, on the way of velocities between "
         "particles and grid, and convection, the work of the forces at the nodes less that of the stress in the "
         "particles. Each term is computed apart from the others; the residual is what their sum misses. Where the "
         "gradients of weights jump, as those of classical MPM do, convection is not small."

@@ -4,9 +4,10 @@ from collections.abc import Callable, Mapping
 from math import inf
 from typing import Any
 
-from mpm_verify.cases.column.claims import Claim, ClaimCode, Compared, beyond
+from mpm_verify.cases.column.claims import beyond
 from mpm_verify.cases.column.exam import ColumnRemark
 from mpm_verify.cases.column.experiment import Band
+from mpm_verify.cases.column.records import Claim, ClaimCode, Compared
 from mpm_verify.cases.column.run import ColumnRun, ColumnStudy
 from mpm_verify.reports.sentences.remarks import unread
 
@@ -17,7 +18,29 @@ NOTHING = {
 AFTER = {
     "cells": "cells wide", "ppc": "per cell", "damping_kind": "damping", "deformation": "F", "smoothing": "smoothing",
 }  # fmt: skip
-QUANTITIES = {"front_99": "front, 99 %", "front_999": "front, 99.9 %", "toe": "toe", "height": "height at the wall"}
+QUANTITIES = {
+    "front_99": "front, 99 %", "front_999": "front, 99.9 %", "toe": "toe", "height": "height at the wall",
+    "height_fit": "height by fit",
+}  # fmt: skip
+MEASURED = {  # after the word by
+    "front_99": "the front of 99 % of the mass", "front_999": "that of 99.9 %", "toe": "the toe",
+    "height": "the height of one strip at the wall", "height_fit": "that by fit",
+}  # fmt: skip
+ENERGIES = {
+    "potential": "potential energy", "kinetic": "kinetic energy of the particles",
+    "on_grid": "kinetic energy on the grid",
+}  # fmt: skip
+LENGTHS = (
+    "Front and toe are distances from the wall in m. The front, by which the paper's sentences are answered, is that "
+    "of 99 % of the mass; 99.9 % lie within the next, and the heap that is connected to the wall ends at its toe. In a "
+    "triangle they are at 0.9, 0.968 and 1 of its length: what can be seen of a deposit ends at the toe.",
+    "The height is that of the heap next to the wall, in one strip of a seventh of the width. By fit it is where a "
+    "line through the first width of the surface meets the wall, which sand that hangs there does not lift. “Height "
+    "falls” is by how much the first still fell in the last fifth of the time. Area: that below the surface over that "
+    "of the column; 1 for a heap that is packed as the column was.",
+    "A run rests once the kinetic energy that the grid sees stays below a ten-thousandth of the initial potential "
+    "energy; grains of the experiment came to rest after 2.5 to 3.3 √(h₀/g).",
+)
 BOOKS = (
     "The logarithm of det F is plastic dilation, void strain and elastic strain, which is small; pooling moves void "
     "and compression between the particles of a cell, and keeps their sum. Crowding is the volume that particles keep "
@@ -80,8 +103,25 @@ def says(claim: Claim) -> str:
 
 
 def found(claim: Claim) -> str:
-    """Sentence on what the runs came to."""
-    return FOUND[claim.code](claim)
+    """Sentences on what the runs came to, and by which measure."""
+    return " ".join(filter(None, (FOUND[claim.code](claim), measured(claim))))
+
+
+def measured(claim: Claim) -> str:
+    """Sentence on the measure of the length that a claim hangs on, and what others answer; empty for energies."""
+    if not claim.by:
+        return ""
+    usual, *others = claim.by
+    same = [MEASURED[name] for name in others if claim.by[name] is claim.reproduced]
+    text = f"By {MEASURED[usual]}" + f"; by {' and '.join(same)} the same" * bool(same)
+    for name in (name for name in others if claim.by[name] is not claim.reproduced):
+        text += f"; by {MEASURED[name]} {ANSWERS[claim.by[name]]}: {each(claim, by(name))}"
+    return text + "."
+
+
+def by(name: str) -> Callable[[Compared], float]:
+    """Function that gives the length of a run by a measure."""
+    return lambda one: one.lengths[name]
 
 
 def band(limits: Band) -> str:
@@ -256,12 +296,18 @@ FOUND: dict[ClaimCode, Callable[[Claim], str]] = {
 def claims(n: Mapping[str, Any]) -> str:
     """Number of sentences that are reproduced."""
     untold = f", {n['open']:g} cannot be told" if n["open"] else ""
-    return f"Sentences of the paper: {n['reproduced']:g} reproduced, {n['not_reproduced']:g} not{untold}."
+    hang = f" By another measure of front or height {n['hang']:g} of them have another answer." if n["hang"] else ""
+    return f"Sentences of the paper: {n['reproduced']:g} reproduced, {n['not_reproduced']:g} not{untold}.{hang}"
 
 
 def unread_curves(n: Mapping[str, Any]) -> str:
     """Sentence on the figures and sentences that are left out."""
     return f"{unread(n)} So are sentences of the paper that are about curves."
+
+
+def by_fit(n: Mapping[str, Any]) -> str:
+    """Height by fit, of a run that was measured so."""
+    return f", {n['height_fit']:.3f} m by fit" if "height_fit" in n else ""
 
 
 REMARKS: dict[str, Callable[[Mapping[str, Any]], str]] = {
@@ -274,8 +320,9 @@ REMARKS: dict[str, Callable[[Mapping[str, Any]], str]] = {
         "that they are in: such a heap is too small for its material."
     ),
     ColumnRemark.ALONE: lambda n: (
-        f"The front comes to {n['front']:.3f} m, and the height at the wall is {n['height']:.3f} m. The method itself "
-        f"loses {100 * n['lost']:.1f} % of the energy."
+        f"The front comes to {n['front_99']:.3f} m by 99 % of the mass, to {n['front_999']:.3f} m by 99.9 %, and the "
+        f"toe to {n['toe']:.3f} m; the height at the wall is {n['height']:.3f} m{by_fit(n)}. The method itself loses "
+        f"{100 * n['lost']:.1f} % of the energy."
     ),
     ColumnRemark.UNREAD: unread_curves,
     ColumnRemark.BANDS: lambda n: (

@@ -21,15 +21,15 @@ def show(record: Record, page: Path | None) -> None:
     if not out.is_terminal:
         out.width = max(out.width, 100)
     table = Table(box=None, pad_edge=False, header_style="dim")
-    for name in ("run", "front 99 %", "99.9 %", "toe", "height", "rest", "falls", "area", ""):
+    for name in ("run", "front 99 %", "99.9 %", "toe", "height", "by fit", "rest", "falls", "area", ""):
         table.add_column(name, justify="left" if name in ("run", "") else "right")
     for run in found.study.runs:
         table.add_row(words.label(found.study, run), *numbers(run, found.results.get(run.digest)))
     out.print()
     out.print(table)
     out.print(
-        "lengths in m from the wall; rest in sqrt(h0/g); falls: fraction of the height in the last fifth of the time; "
-        "area: of the heap over that of the column"
+        "lengths in m from the wall; height: of one strip, and by fit over the first width; rest in sqrt(h0/g); falls: "
+        "fraction of the height in the last fifth of the time; area: of the heap over that of the column"
     )
     styles = {True: "bold green", False: "bold yellow", None: "dim"}
     for claim in found.claims:
