@@ -82,8 +82,8 @@ def test_a_claim_is_answered_by_every_measure() -> None:
     assert (over.reproduced, under.reproduced) == (False, False)
     assert [code for code, claim in held.items() if claim.hangs] == [over.code, under.code]
     assert words.found(over).endswith(
-        "By the front of 99 % of the mass; by that of 99.9 % the same; by the toe reproduced: 0.850 m with 1 per cell, "
-        "0.980 m with 9 per cell."
+        "By the front of 99 % of the mass; the same by that of 99.9 %; by the toe: reproduced "
+        "(0.850 m with 1 per cell, 0.980 m with 9 per cell)."
     )
     assert over.runs[0].lengths == {
         "front_99": 0.70,
@@ -94,7 +94,7 @@ def test_a_claim_is_answered_by_every_measure() -> None:
     }
     same = said([by_measures(ran(0.9, ppc=1), front_999=0.95, toe=0.98, height_fit=0.15), more], "ppc")
     assert not same[ClaimCode.FRONT_OVER].hangs
-    assert words.found(same[ClaimCode.FRONT_OVER]).endswith("; by that of 99.9 % and the toe the same.")
+    assert words.found(same[ClaimCode.FRONT_OVER]).endswith("; the same by that of 99.9 % and the toe.")
 
 
 def test_every_claim_hangs_on_a_front_a_height_or_an_energy() -> None:

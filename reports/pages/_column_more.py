@@ -89,7 +89,7 @@ def films(analysis: ColumnAnalysis, store: Store, add: Add, ran: Sequence[tuple[
 def books(analysis: ColumnAnalysis) -> Section:
     """Section on the volume of the heap at the end: what it is made of, and the space that it takes."""
     head = ("run", "plastic dilation", "void strain", "det F", "unaccounted for", "crowding",
-            "det F / crowding", "area", "height falls")  # fmt: skip
+            "det F / crowding", "area below 99 %", "height falls")  # fmt: skip
     rows = []
     for one in analysis.ran:
         v = one.values

@@ -67,7 +67,8 @@ def summary(analysis: ColumnAnalysis, add: Add) -> Section:
     for run in analysis.study.runs:
         result = analysis.results.get(run.digest)
         rows.append((words.label(analysis.study, run), *numbers(run, result)))
-    return Section("runs", "Runs", [*analysis.study.words, *words.LENGTHS], tables=[
+    older = any("area_levelled" not in one.values for one in analysis.ran)
+    return Section("runs", "Runs", [*analysis.study.words, *words.LENGTHS, *[words.OLDER] * older], tables=[
         Table("Results of the runs", head, tuple(rows), texts=("outcome",))])  # fmt: skip
 
 

@@ -24,7 +24,7 @@ QUANTITIES = {
 }  # fmt: skip
 MEASURED = {  # after the word by
     "front_99": "the front of 99 % of the mass", "front_999": "that of 99.9 %", "toe": "the toe",
-    "height": "the height of one strip at the wall", "height_fit": "that by fit",
+    "height": "the strip at the wall", "height_fit": "the line through the first width",
 }  # fmt: skip
 ENERGIES = {
     "potential": "potential energy", "kinetic": "kinetic energy of the particles",
@@ -41,6 +41,7 @@ LENGTHS = (
     "A run rests once the kinetic energy that the grid sees stays below a ten-thousandth of the initial potential "
     "energy; grains of the experiment came to rest after 2.5 to 3.3 √(h₀/g).",
 )
+OLDER = "A dash stands where a run was stored before that was measured; the command of the study runs it again."
 BOOKS = (
     "The logarithm of det F is plastic dilation, void strain and elastic strain, which is small; pooling moves void "
     "and compression between the particles of a cell, and keeps their sum. Crowding is the volume that particles keep "
@@ -113,9 +114,9 @@ def measured(claim: Claim) -> str:
         return ""
     usual, *others = claim.by
     same = [MEASURED[name] for name in others if claim.by[name] is claim.reproduced]
-    text = f"By {MEASURED[usual]}" + f"; by {' and '.join(same)} the same" * bool(same)
+    text = f"By {MEASURED[usual]}" + f"; the same by {' and '.join(same)}" * bool(same)
     for name in (name for name in others if claim.by[name] is not claim.reproduced):
-        text += f"; by {MEASURED[name]} {ANSWERS[claim.by[name]]}: {each(claim, by(name))}"
+        text += f"; by {MEASURED[name]}: {ANSWERS[claim.by[name]]} ({each(claim, by(name))})"
     return text + "."
 
 
