@@ -1,9 +1,9 @@
 """Records of what a study of the column is held against: finished runs, their lengths by several measures, claims.
 
 Fronts and heights are measured in several ways (MEASURES), the usual one first: a claim is answered by that, and by the
-others beside it. The front of 99 % of the mass is usual: numbers are recorded by it, single particles do not move it,
-and it is the least of the three, so that what is too far by it is too far by the others. In a triangle it is at 0.9 of
-the toe, the front of 99.9 % at 0.968: what an experiment sees is nearer to the toe.
+others beside it. The front of 99 % of the mass is usual: numbers are recorded by it, no particle alone moves it, and it
+is the least of the three, so that what is too far by it is too far by the others. In a triangle it is at 0.9 of the
+toe, the front of 99.9 % at 0.968: what an experiment sees is nearer to the toe.
 """
 
 from dataclasses import dataclass, field
