@@ -8,7 +8,7 @@ import pytest
 from fixtures_command import process
 
 from mpm_verify.cases.column.aspect import ENOUGH, lines, scaling
-from mpm_verify.cases.column.claims import FinishedRun
+from mpm_verify.cases.column.records import FinishedRun
 from mpm_verify.cases.column.run import ColumnRun
 from mpm_verify.reports.figures.aspect import run_out
 
@@ -16,7 +16,7 @@ WIDTH = ColumnRun().width
 
 
 def ended(front: float = 0.5, **chosen: Any) -> FinishedRun:
-    return FinishedRun(ColumnRun(**chosen), {"front_99": front, "crowding": 1.0}, {})
+    return FinishedRun(ColumnRun(**chosen), {"front_99": front, "toe": 1.1 * front, "crowding": 1.0}, {})
 
 
 @pytest.mark.parametrize(
@@ -34,6 +34,7 @@ def test_a_line_has_runs_that_differ_in_aspect_and_in_cells() -> None:
     assert [line.shared for line in found] == [{"ppc": 4}, {"ppc": 9}]
     assert [(at.aspect, at.cells) for at in found[0].points] == [(0.5, 12), (2.0, 12), (7.0, 42)]
     assert [at.run_out for at in found[1].points] == pytest.approx([0.5, 2.0, 7.0])
+    assert [at.by["toe"] for at in found[1].points] == pytest.approx([0.65, 2.3, 7.8])
 
 
 def test_what_is_no_line() -> None:

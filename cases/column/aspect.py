@@ -6,11 +6,12 @@ and 2.8. No primary text was at hand, see cases/column/experiment.py.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
-from mpm_verify.cases.column.claims import FinishedRun, values
+from mpm_verify.cases.column.claims import values
 from mpm_verify.cases.column.experiment import Band
+from mpm_verify.cases.column.records import MEASURES, FinishedRun
 
 FACTORS = ((1.2, 1.9), (1.6, 2.2))  # of a, and of a^(2/3), in each form
 BETWEEN = (1.8, 2.8)  # aspects at which one scaling goes over into the other
@@ -19,12 +20,16 @@ ENOUGH = 24  # cells of the height: with fewer a squat column falls short
 
 @dataclass(frozen=True)
 class Point:
-    """A column at rest: aspect, run-out over the width, cells of its height, and crowding."""
+    """A column at rest: aspect, run-out over the width, by the usual front, cells of its height, and crowding.
+
+    `by`: the run-out by each measure of the front that the run has.
+    """
 
     aspect: float
     run_out: float
     cells: int
     crowding: float
+    by: dict[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -59,7 +64,8 @@ def lines(ran: Sequence[FinishedRun], axes: Sequence[str]) -> list[Line]:
 
 
 def point(one: FinishedRun) -> Point:
-    """Point of a run, by the front of 99 % of its mass."""
+    """Point of a run."""
     run = one.run
+    by = {name: one.lengths[name] / run.width - 1 for name in MEASURES["front"] if name in one.lengths}
     run_out = (one.front - run.width) / run.width
-    return Point(run.aspect, run_out, round(run.aspect * run.cells), one.values["crowding"])
+    return Point(run.aspect, run_out, round(run.aspect * run.cells), one.values["crowding"], by)
