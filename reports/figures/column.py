@@ -48,7 +48,7 @@ def fronts(ran: Sequence[FinishedRun], labels: Labels) -> Figure:
         figure, panels = stacked(FRONTS)
         for axes, name in zip(panels, FRONTS, strict=True):
             if known:
-                resting(axes, known, last)
+                resting(axes, known, last, axes is panels[0])
             for number, (one, label) in enumerate(zip(ran, labels, strict=True)):
                 axes.plot(one.curves["t"] / one.run.tau, one.curves[name], label=label, **stroke(number))
             axes.set(xlim=(0, last), ylim=(0, None))
@@ -57,14 +57,15 @@ def fronts(ran: Sequence[FinishedRun], labels: Labels) -> Figure:
     return figure
 
 
-def resting(axes: Axes, known: Experiment, last: float) -> None:
+def resting(axes: Axes, known: Experiment, last: float, named: bool) -> None:
     """Shade where the experiment's front rests until the `last` time, with dashes at the times of that."""
     low, high = known.front
     axes.add_patch(Rectangle((known.rest[0], low), last - known.rest[0], high - low, color=SAND, linewidth=0))
     for time in known.rest:
         axes.plot([time, time], [low, high], color=style.GREY, linewidth=1, linestyle=(0, (2, 2)))
-    axes.annotate("experiment, at rest", (last, low), xytext=(-4, -4), textcoords="offset points", ha="right",
-                  va="top", color=style.GREY, fontsize=10)  # fmt: skip
+    if named:
+        axes.annotate("experiment, at rest", (last, low), xytext=(-4, -4), textcoords="offset points", ha="right",
+                      va="top", color=style.GREY, fontsize=10)  # fmt: skip
 
 
 def stacked(names: Mapping[str, str]) -> tuple[Figure, Sequence[Axes]]:
@@ -81,12 +82,12 @@ def profiles(ran: Sequence[FinishedRun], labels: Labels) -> Figure:
     names = {name: text for name, text in PROFILES.items() if all(name in one.curves for one in ran)}
     run, known = ran[0].run, shared_experiment(ran)
     far = 1.05 * max(one.values["front_999"] for one in ran)
-    tall = 1.15 * max(float(one.curves[name][-1].max()) for one in ran for name in names)
-    tall = max(tall, 1.1 * known.height[1]) if known else tall
     with rc_context(style.RC):
         figure, panels = stacked(names)
         for axes, name in zip(panels, names, strict=True):
+            tall = 1.15 * max(float(one.curves[name][-1].max()) for one in ran)
             if known:
+                tall = max(tall, 1.1 * known.height[1])
                 deposit(axes, run, known, tall, axes is panels[0])
             axes.plot([run.width, run.width], [0, tall], color=style.GREY, linewidth=1, linestyle=(0, (2, 2)))
             for number, (one, label) in enumerate(zip(ran, labels, strict=True)):

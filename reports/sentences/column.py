@@ -35,11 +35,11 @@ LENGTHS = (
     "of 99 % of the mass; 99.9 % lie within the next, and the heap that is connected to the wall ends at its toe. In a "
     "triangle they are at 0.9, 0.968 and 1 of its length: what can be seen of a deposit ends at the toe.",
     "The height is that of the heap next to the wall, in one strip of a seventh of the width. By fit it is where a "
-    "line through the first width of the surface meets the wall, which sand that hangs there does not lift. “Height "
-    "falls” is by how much the first still fell in the last fifth of the time. Area: that below the surface over that "
-    "of the column; 1 for a heap that is packed as the column was.",
+    "line through the first width of the surface meets the wall, which sand that hangs there does not lift. Falls: by "
+    "how much the first still fell in the last fifth of the time. Area: that below the surface over that of the "
+    "column; 1 for a heap that is packed as the column was.",
     "A run rests once the kinetic energy that the grid sees stays below a ten-thousandth of the initial potential "
-    "energy; grains of the experiment came to rest after 2.5 to 3.3 √(h₀/g).",
+    "energy. Times of rest are in √(h₀/g); grains of the experiment came to rest after 2.5 to 3.3 of it.",
 )
 OLDER = "A dash stands where a run was stored before that was measured; the command of the study runs it again."
 BOOKS = (
