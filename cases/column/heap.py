@@ -17,7 +17,7 @@ from mpm_verify.solver.state import Floats
 
 FRACTION = 0.99  # of the mass of a strip, below its height
 ABOVE = 0.05  # of it, above the heights from which the levelled top is extrapolated
-ROWS = 8  # of a strip's width, in which heights are interpolated
+ROWS = 4  # of a strip's width, in which heights are interpolated
 
 
 def quantile(x: Floats, m: Floats, fraction: float) -> float:
@@ -56,27 +56,36 @@ def levelled(x: Floats, m: Floats, V: Floats, strip: float, strips: int) -> Floa
     The last two strips, which the heap may fill in part, have the height of their mass at the density before them.
     """
     mass = masses(x, m, V, strip, strips)
-    below, edges = np.cumsum(mass, axis=1), strip / ROWS * np.arange(mass.shape[1] + 1)
-    whole, found = below[:, -1], np.zeros(strips)
+    below, found = np.cumsum(mass, axis=1), np.zeros(strips)
+    whole = below[:, -1]
     there = np.flatnonzero(whole > 1e-9 * m.mean())
-    for k in there:
-        found[k] = extrapolated(np.append(0.0, below[k] / whole[k]), edges, strip / 4)
+    found[there] = strip / ROWS * extrapolated(below[there] / whole[there, None], ROWS / 4)
     for k in there[-2:] if len(there) > 2 else ():
         found[k] = whole[k] * found[there[-3]] / whole[there[-3]]
     return found
 
 
-def extrapolated(below: Floats, heights: Floats, slack: float) -> float:
-    """Height of the top, from the fractions of the mass that are below some heights.
+def extrapolated(below: Floats, slack: float) -> Floats:
+    """Height (n,) of the top, in rows, from the fractions (n,rows) of the mass that are below the upper ends of rows.
 
     A line through eight heights, of ABOVE to eight times that from the top, goes on to all of the mass. They are lower,
     and fewer, where `slack`, by which the top may lie below its mean, is more than ABOVE of the height.
     """
-    above = min(max(ABOVE, slack / float(np.interp(1 - ABOVE, below, heights))), 0.5)
-    count = min(8, int(1 / above))
-    k = np.arange(1, count + 1)
+    high = height_of(below, np.full((len(below), 1), 1 - ABOVE))
+    above = np.clip(slack / high, ABOVE, 0.5)
+    count, k = np.minimum(8, np.floor(1 / above)), np.arange(1, 9)
     weights = (4 * count + 2 - 6 * k) / (count * (count - 1))  # of a straight line by least squares, at k = 0
-    return float(weights @ np.interp(1 - above * k, below, heights))
+    found: Floats = (np.where(k <= count, weights, 0) * height_of(below, 1 - above * k)).sum(axis=1)
+    return found
+
+
+def height_of(below: Floats, fraction: Floats) -> Floats:
+    """Heights (n,k), in rows, below which fractions (n,k) of the mass lie, at least a hair; mass is even in a row."""
+    below, fraction = np.insert(below, 0, 0.0, axis=1), np.maximum(fraction, 1e-12)
+    row = (below[:, None] < fraction[..., None]).sum(axis=2).clip(1, below.shape[1] - 1)
+    low, high = (np.take_along_axis(below, row - shift, axis=1) for shift in (1, 0))
+    found: Floats = row - 1 + (fraction - low) / (high - low)
+    return found
 
 
 def masses(x: Floats, m: Floats, V: Floats, strip: float, strips: int) -> Floats:
