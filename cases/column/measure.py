@@ -38,8 +38,7 @@ class Measure(Observer):
         self.run, self.end = run, float(model.grid.upper[0])
         self.strips, self.near = round(self.end / run.strip), round(run.width / run.strip)
         self.first: dict[str, float] = {}
-        self.rows: list[dict[str, float]] = []
-        self.profiles: list[dict[str, Floats]] = []
+        self.rows: list[dict[str, Any]] = []
         self.momentum = momentum(model)
         self.plastic, self.worked = 0.0, worked(model)
         self.steps = round(run.duration / model.dt)
@@ -65,7 +64,7 @@ class Measure(Observer):
         self.first = self.first or terms
         moved = momentum(model) - self.momentum
         given = self.budget.impulse + self.budget.gravity * float(p.m.sum()) * model.time
-        row = {
+        row: dict[str, Any] = {
             "t": model.time,
             "front_99": quantile(x[:, 0], p.m, 0.99),
             "front_999": quantile(x[:, 0], p.m, 0.999),
@@ -86,8 +85,7 @@ class Measure(Observer):
             **books(model),
         }
         row["courant"] = model.dt / model.grid.dx * (model.material.wave_speed(row["largest_s"]) + row["fastest"])
-        self.rows.append(row)
-        self.profiles.append(profiles)
+        self.rows.append(row | profiles)
 
     def surfaces(self, x: Floats, m: Floats, V: Floats) -> dict[str, Floats]:
         """Surfaces (strips,) of the heap by name: the recorded one, the levelled one, and that by volume."""
@@ -117,8 +115,7 @@ class Measure(Observer):
 
     def curves(self) -> dict[str, Floats]:
         """Columns of the rows, and profiles (T,strips)."""
-        both: Any = [{**row, **profiles} for row, profiles in zip(self.rows, self.profiles, strict=True)]
-        return {name: np.array([one[name] for one in both]) for name in (both[0] if both else ())}
+        return {name: np.array([row[name] for row in self.rows]) for name in (self.rows[0] if self.rows else ())}
 
 
 def due(step: int, steps: int, times: int) -> bool:
