@@ -206,7 +206,7 @@ def test_curves_that_cannot_be_read_cost_figures_alone(verify: Any, swept: Path,
     file.write_bytes(file.read_bytes()[:1000])
     found = read(folder).analysis
     assert found.checks == whole.checks
-    assert found.more.refined == whole.more.refined
+    assert repr(found.more.refined) == repr(whole.more.refined)  # an order that is not a number equals none
     gone = {claim.code for claim in whole.more.claims} - {claim.code for claim in found.more.claims}
     assert gone <= {ClaimCode.POTENTIAL_KEPT, ClaimCode.KINETIC_CHANGED}
     assert len(found.more.claims) == len(whole.more.claims) - 2  # those of the one family with that run
