@@ -1,31 +1,44 @@
-"""Two stored studies compared run by run: errors and values, how runs ended, and verdicts."""
+"""Two stored studies compared run by run: errors and values, how runs ended, observed orders, and verdicts."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
 from math import isclose, nan
-from typing import Any
+from typing import Any, Literal
 
 from mpm_verify.reports.frames import Record
+
+Kind = Literal["verdict", "order", "status", "number", "run"]
 
 
 @dataclass(frozen=True)
 class Change:
-    """Change: a run or a refinement, which of its numbers or words, and both values."""
+    """Change: a run or a refinement, which of its numbers or words, both values, and what kind of change it is."""
 
     of: str
     what: str
     before: Any
     after: Any
+    kind: Kind = "number"
+
+    @property
+    def ratio(self) -> str:
+        """Ratio of two numbers as text; empty of anything else."""
+        if all(isinstance(value, float) for value in (self.before, self.after)) and self.before:
+            return f"{self.after / self.before:.6g} times"
+        return ""
 
     def __str__(self) -> str:
-        ratio = ""
-        if all(isinstance(value, float) for value in (self.before, self.after)) and self.before:
-            ratio = f" ({self.after / self.before:.6g} times)"
-        return f"{self.of}: {self.what} {self.before} -> {self.after}{ratio}"
+        return f"{self.of}: {self.what} {self.before} -> {self.after}{f' ({self.ratio})' if self.ratio else ''}"
 
 
 def changes(a: Record, b: Record, tolerance: float) -> tuple[list[Change], int]:
-    """Changes from a to b, and the number of runs that both have. Raises ValueError where there are none."""
+    """Changes from a to b, verdicts first, and the number of runs that both have.
+
+    Numbers differ where they are further apart than `tolerance`, as a fraction of the larger one. Runs that one study
+    asks for and the other does not are no change.
+
+    Raises ValueError where they are of two cases, or have no run in common.
+    """
     if a.study.case != b.study.case:
         raise ValueError(f"{a.store.folder} holds the case {a.study.case}, {b.store.folder} the case {b.study.case}")
     first, second = ({result.run: result for result in record.results.values()} for record in (a, b))
@@ -33,17 +46,28 @@ def changes(a: Record, b: Record, tolerance: float) -> tuple[list[Change], int]:
     if not both:
         raise ValueError(f"{a.store.folder} and {b.store.folder} have no run in common")
     found = [change for run in both for change in of_run(first[run], second[run], tolerance)]
-    return found + list(of_verdicts(a, b)), len(both)
+    return [*of_verdicts(a, b), *of_orders(a, b, tolerance), *found], len(both)
+
+
+def alone(a: Record, b: Record) -> tuple[list[Any], list[Any]]:
+    """Stored runs that only the first has, and only the second."""
+    first, second = ([result.run for result in record.results.values()] for record in (a, b))
+    return [run for run in first if run not in second], [run for run in second if run not in first]
 
 
 def of_run(before: Any, after: Any, tolerance: float) -> Iterator[Change]:
     """Changes of one run."""
     name = f"{before.run}, {differs(before.run)}"
     if before.status != after.status:
-        yield Change(name, "status", before.status, after.status)
+        yield Change(name, "status", before.status, after.status, "status")
     for key, (x, y) in numbers(before, after).items():
-        if x != y and not isclose(x, y, rel_tol=tolerance, abs_tol=0.0) and not (x != x and y != y):
+        if not near(x, y, tolerance):
             yield Change(name, key, x, y)
+
+
+def near(x: float, y: float, tolerance: float) -> bool:
+    """Whether two numbers are alike: as near as the tolerance, or neither is a number."""
+    return x == y or isclose(x, y, rel_tol=tolerance, abs_tol=0.0) or (x != x and y != y)
 
 
 def numbers(before: Any, after: Any) -> dict[str, tuple[float, float]]:
@@ -69,11 +93,26 @@ def of_verdicts(a: Record, b: Record) -> Iterator[Change]:
     first, second = (outcomes(record) for record in (a, b))
     for key in first:
         if key in second and first[key] != second[key]:
-            yield Change(key, "verdict", first[key], second[key])
+            yield Change(key, "verdict", first[key], second[key], "verdict")
 
 
 def outcomes(record: Record) -> dict[str, str]:
     """Outcome by what is judged."""
-    judged = [f for f in record.findings if f.counts]
-    found = {f"{record.label(f.plan.run)}, {f.plan.quantity} {f.plan.norm}": str(f.verdict.outcome) for f in judged}
+    found = {judged(record, f): str(f.verdict.outcome) for f in record.findings if f.counts}
     return found | {f"{check.group}: {check.name}": str(check.outcome) for check in record.analysis.checks}
+
+
+def judged(record: Record, finding: Any) -> str:
+    """Name of a judged quantity."""
+    return f"{record.label(finding.plan.run)}, {finding.plan.quantity} {finding.plan.norm}"
+
+
+def of_orders(a: Record, b: Record, tolerance: float) -> Iterator[Change]:
+    """Judged quantities whose observed order is another one."""
+    first, second = (
+        {judged(record, f): nan if f.verdict.observed is None else f.verdict.observed
+         for f in record.findings if f.counts} for record in (a, b)
+    )  # fmt: skip
+    for key in first:
+        if key in second and not near(first[key], second[key], tolerance):
+            yield Change(key, "observed order", first[key], second[key], "order")

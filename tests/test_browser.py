@@ -1,4 +1,5 @@
-"""The pages in a real browser: missing images, console errors, horizontal scrolling; and that these checks can fail."""
+"""The pages in a real browser, light, dark and on paper: missing images, console errors, scrolling, clipped figures,
+cut tables, network, keyboard; and that these checks can fail."""
 
 import os
 import time
@@ -29,7 +30,8 @@ from mpm_verify.reports.frames import Record, read
 from mpm_verify.verify.run import page_of
 
 CHROMIUM, DRIVER = Path("/usr/bin/chromium"), Path("/usr/bin/chromedriver")
-WIDTHS = (1280, 360)
+WIDTHS = (1280, 768, 390)
+PAPER = 703  # pixels: A4 between margins of 12 mm
 ARGUMENTS = (
     "--headless=new",
     "--no-sandbox",
@@ -43,7 +45,43 @@ MISSING = (
     "return [...document.images].filter(i => !(i.complete && i.naturalWidth > 0)).map(i => i.alt || i.src.slice(0, 60))"
 )
 OVERFLOW = "const d = document.documentElement; return d.scrollWidth - d.clientWidth"
-SMALLEST = "return Math.min(...[...document.images].map(i => i.getBoundingClientRect().width / innerWidth))"
+FIGURES = "svg[role=img]"
+SMALLEST = f"""
+return Math.min(...[...document.querySelectorAll("{FIGURES}")].map(i => i.getBoundingClientRect().width / innerWidth))
+"""
+# texts, legends and axes of a figure that are not inside its canvas
+CLIPPED = f"""
+return [...document.querySelectorAll("{FIGURES}")].filter(svg => svg.getBoundingClientRect().width).flatMap(svg => {{
+  const canvas = svg.getBoundingClientRect();
+  const parts = svg.querySelectorAll("[id*='-text_'], [id*='-legend_'], [id*='-axis_'], [id*='-series-'] use");
+  return [...parts].filter(part => {{
+    const box = part.getBoundingClientRect();
+    return box.width && (box.left < canvas.left - 1 || box.right > canvas.right + 1 || box.top < canvas.top - 1
+      || box.bottom > canvas.bottom + 1);
+  }}).map(part => svg.getAttribute("aria-label").slice(0, 40) + ": " + part.id);
+}})
+"""
+# tables that are wider than their box, and cells that are not inside it or not seen
+CUT = """
+return [...document.querySelectorAll("table")].flatMap(table => {
+  const box = table.parentElement.getBoundingClientRect(), wrong = [];
+  for (const cell of table.querySelectorAll("tbody tr > *")) {
+    const at = cell.getBoundingClientRect();
+    const seen = at.width && at.right < box.right + 1 && at.left > box.left - 1;
+    if (cell.textContent && !seen) wrong.push(cell.textContent);
+  }
+  const heads = [...table.querySelectorAll("thead th")].map(head => head.textContent);
+  if (!table.tHead.getBoundingClientRect().width) {
+    const named = new Set([...table.querySelectorAll("td")].map(cell => cell.dataset.head));
+    const leads = table.querySelector("tbody tr:not(.group)").querySelectorAll("th").length;
+    wrong.push(...heads.slice(leads).filter(head => !named.has(head)));
+  }
+  return wrong.slice(0, 2).map(text => table.caption.textContent.slice(0, 40) + ": " + text.slice(0, 40));
+})
+"""
+LOADED = (
+    "return performance.getEntriesByType('resource').map(one => one.name).filter(name => !name.startsWith('data:'))"
+)
 
 
 @pytest.fixture(scope="module")
@@ -82,9 +120,13 @@ def console(browser: webdriver.Chrome) -> list[str]:
     return [entry["message"] for entry in browser.get_log("browser")]  # type: ignore[no-untyped-call]  # selenium
 
 
-def look(browser: webdriver.Chrome, page: Path, width: int) -> dict[str, Any]:
+def look(
+    browser: webdriver.Chrome, page: Path, width: int, scheme: str = "light", media: str = "screen"
+) -> dict[str, Any]:
     """What is wrong with a page `width` pixels wide, with all that folds unfolded: empty where nothing is."""
     metrics = {"width": width, "height": 800, "deviceScaleFactor": 1, "mobile": False}
+    features = [{"name": "prefers-color-scheme", "value": scheme}]
+    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": media, "features": features})
     browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)  # a window cannot be 360 wide
     console(browser)  # drops what earlier pages said
     browser.get(page.as_uri())
@@ -93,23 +135,70 @@ def look(browser: webdriver.Chrome, page: Path, width: int) -> dict[str, Any]:
         "missing": browser.execute_script(MISSING),
         "overflow": max(0, browser.execute_script(OVERFLOW)),
         "console": console(browser),
+        "cut": browser.execute_script(CUT),
+        "clipped": browser.execute_script(CLIPPED),
+        "loaded": browser.execute_script(LOADED),
     }
     return {name: wrong for name, wrong in found.items() if wrong}
 
 
-@pytest.mark.parametrize("width", WIDTHS)
-def test_whole_study(browser: webdriver.Chrome, page: Path, width: int) -> None:
-    assert look(browser, page, width) == {}
-    assert browser.execute_script("return document.images.length") == 7
+def count(browser: webdriver.Chrome, selector: str = FIGURES) -> int:
+    """Number of elements of the page."""
+    return len(browser.find_elements("css selector", selector))
 
 
+@pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("width", WIDTHS)
+def test_whole_study(browser: webdriver.Chrome, page: Path, width: int, scheme: str) -> None:
+    assert look(browser, page, width, scheme) == {}
+    assert count(browser) == 7
+
+
+def test_paper_has_each_column(browser: webdriver.Chrome, page: Path) -> None:
+    assert look(browser, page, PAPER, media="print") == {}
+    assert count(browser, "tr") > 100
+    assert browser.execute_script("return getComputedStyle(document.querySelector('nav')).display") == "none"
+
+
+def luminance(colour: str) -> float:
+    """Relative luminance of `rgb(r, g, b)`, as the guidelines for accessible content define it."""
+    parts = [int(part) / 255 for part in colour[4:-1].split(",")]
+    red, green, blue = (p / 12.92 if p <= 0.03928 else ((p + 0.055) / 1.055) ** 2.4 for p in parts)
+    return 0.2126 * red + 0.7152 * green + 0.0722 * blue
+
+
+COLOURS = """
+const of = (selector, name) => getComputedStyle(document.querySelector(selector))[name];
+return [of("body", "backgroundColor"), of("body", "color"), of("figure [id$='-patch_1'] path", "fill"),
+  ...[...document.querySelectorAll("[id^='figure1_rms-series-'] path")].map(path => getComputedStyle(path).stroke)]
+"""
+
+
+@pytest.mark.parametrize(("scheme", "media"), [("light", "screen"), ("dark", "screen"), ("dark", "print")])
+def test_text_and_lines_stand_out_from_their_ground(
+    browser: webdriver.Chrome, page: Path, scheme: str, media: str
+) -> None:
+    """Text 7 : 1, lines of figures 3 : 1; on paper the ground is white, whatever the screen was."""
+    look(browser, page, 1280, scheme, media)
+    ground, ink, paper, *lines = [luminance(one) for one in browser.execute_script(COLOURS) if one != "none"]
+    assert (ground < 0.1) == (paper < 0.1) == ((scheme, media) == ("dark", "screen"))
+    assert contrast(ink, ground) > 7
+    assert len(lines) > 3
+    assert min(contrast(line, paper) for line in lines) > 3
+
+
+def contrast(a: float, b: float) -> float:
+    """Ratio of two luminances."""
+    return (max(a, b) + 0.05) / (min(a, b) + 0.05)
+
+
+@pytest.mark.parametrize("width", [1280, 390])
 def test_unfinished_study(browser: webdriver.Chrome, unfinished: Path, width: int) -> None:
     assert look(browser, unfinished, width) == {}
 
 
 def test_figures_take_the_width_of_a_phone(browser: webdriver.Chrome, page: Path) -> None:
-    look(browser, page, 360)
+    assert look(browser, page, 360) == {}
     assert browser.execute_script(SMALLEST) > 0.8
 
 
@@ -193,9 +282,11 @@ def examined(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFa
 def test_examinations(browser: webdriver.Chrome, examined: tuple[Path, int], width: int) -> None:
     page, images = examined
     assert look(browser, page, width) == {}
-    assert browser.execute_script("return document.images.length") == images
+    assert count(browser) == images
     assert "Checks that did not pass" in browser.page_source
     assert width > 700 or browser.execute_script(SMALLEST) > 0.8
+    if width == WIDTHS[0]:
+        assert look(browser, page, width, "dark") == look(browser, page, PAPER, media="print") == {}
 
 
 FRAME = """
@@ -226,6 +317,12 @@ def test_a_film_plays(browser: webdriver.Chrome, tmp_path: Path) -> None:
     assert 0 < float(browser.find_element("css selector", ".film output").text.removesuffix(" s")) < 0.4
 
 
+WIDE = (
+    "<table {}><caption>a</caption><thead><tr><th>b</th></tr></thead><tbody><tr>"
+    "<td style='min-width: 99rem; {}'>far</td></tr></tbody></table>"
+)
+
+
 @pytest.mark.parametrize(
     ("body", "wrong"),
     [
@@ -233,9 +330,12 @@ def test_a_film_plays(browser: webdriver.Chrome, tmp_path: Path) -> None:
         ('<div style="width: 2000px">too wide</div>', "overflow"),
         ("<script>console.error('a fault')</script>", "console"),
         ("<script>missing_function()</script>", "console"),
+        (f"<div style='overflow: hidden'>{WIDE.format('', '')}</div>", "cut"),
+        (f"<div style='overflow: hidden'>{WIDE.format('class=x', 'display: none')}</div>", "cut"),
+        ('<svg role="img" width="100" aria-label="a"><text id="a-text_1" x="90" y="9">clipped</text></svg>', "clipped"),
     ],
 )
-@pytest.mark.parametrize("width", WIDTHS)
+@pytest.mark.parametrize("width", [1280, 390])
 def test_the_checks_can_fail(
     browser: webdriver.Chrome, page: Path, tmp_path: Path, width: int, body: str, wrong: str
 ) -> None:

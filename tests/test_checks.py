@@ -271,7 +271,8 @@ def test_the_page_names_what_missed_first(tmp_path: Path) -> None:
     assert "The errors are against the exact curve: a sieve &lt;&amp;&gt;." in page
     assert "500000 (paper)" in page
     assert '<span class="badge FAIL">' in page
-    assert page.count('data-head="found"') == page.count('data-head="expected"') == 2  # rows that a phone stacks
+    cells = page.count('data-head="found"')  # rows that a phone stacks: those that missed twice
+    assert cells == page.count('data-head="expected"') >= 4
     assert "Checks that did not pass" not in drawn(tmp_path, GOOD)
 
 

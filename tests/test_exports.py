@@ -119,10 +119,10 @@ def test_a_difference_of_a_number(verify: Call, pair: tuple[Path, Path]) -> None
         name = altered(pair[1], errors=errors)
         code, out, _ = verify("diff", *map(str, pair))
         assert code == 1
-        first, last = out.splitlines()
-        assert first.startswith(f"{name}, ")
-        assert "u final" in first
-        assert first.endswith("(1.001 times)")
+        _, first, last = out.splitlines()
+        assert f" {name}, " in first
+        assert first.startswith("u final ")
+        assert " 1.001 times " in first
         assert last == "1 changes in 32 runs that both have"
         assert verify("diff", *map(str, pair), "--tolerance", "0.01")[0] == 0
         found = json.loads(verify("diff", *map(str, pair), "--json")[1])
@@ -135,7 +135,7 @@ def test_a_difference_of_an_end(verify: Call, pair: tuple[Path, Path]) -> None:
         altered(pair[1], status="failed", errors={}, failure=fixtures.Failure(fixtures.FailureKind.INVERTED, 3))
         code, out, _ = verify("diff", *map(str, pair))
     assert code == 1
-    assert "status finished -> failed" in out
+    assert ["status", "finished", "failed"] in [line.split()[:3] for line in out.splitlines()]
 
 
 def test_what_cannot_be_compared(verify: Call, pair: tuple[Path, Path], tmp_path: Path) -> None:

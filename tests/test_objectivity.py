@@ -264,7 +264,7 @@ def test_the_page_is_made_of_what_is_stored(folder: Path) -> None:
         assert part in text
     for name in (*RIGHT, *WRONG):
         assert name.replace("_", " ") in text
-    assert len(list((folder / "figures").glob("*.png"))) == text.count("<img") == 8
+    assert len(list((folder / "figures").glob("*.png"))) == text.count('<svg role="img"') == 8
 
 
 @pytest.mark.slow
@@ -286,7 +286,7 @@ def test_curves_that_cannot_be_read_cost_figures_alone(
     assert f"The curves in runs/{file.name} cannot be read, and their figures are left out" in out
     text = (folder / "report.html").read_text()
     assert f"The curves in runs/{file.name} cannot be read" in text
-    assert text.count("<img") == figures
+    assert text.count('<svg role="img"') == figures
 
 
 def analyse_code(folder: Path) -> int:

@@ -8,12 +8,12 @@ from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.cases.judging.order import Outcome
 from mpm_verify.reports import words
 from mpm_verify.reports.components import audited
+from mpm_verify.reports.components.badges import MET
 from mpm_verify.reports.components.stalls import short
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences import commands, verdicts
 from mpm_verify.reports.sentences import headline as headlines
 
-MET = "MET"  # look of a registered non-convergence that was seen: not that of a convergence
 DIVERGES = {
     Outcome.PASS: "Does not converge, as registered before the run",
     Outcome.INCONCLUSIVE: "Not decided",
@@ -45,13 +45,16 @@ class Card:
     stall: str
     unseen: str
     seen: tuple[str, ...]
-    edges: str = ""
     finished: bool = True  # whether a level did: what a solution cannot see matters only then
+    source: str = ""
+    number: int = 0  # from 1 on
+    solution: str = ""
 
 
 def cards(record: Record) -> list[Card]:
     """Cards of the judged quantities in the order of the plans."""
-    return [_card(record, found) for found in record.findings if found.counts]
+    counted = [found for found in record.findings if found.counts]
+    return [_card(record, found, number) for number, found in enumerate(counted, 1)]
 
 
 def summary(record: Record) -> str:
@@ -67,7 +70,7 @@ def summary(record: Record) -> str:
     return ", ".join([passed, *registered, *others]) + "."
 
 
-def _card(record: Record, found: Finding) -> Card:
+def _card(record: Record, found: Finding, number: int) -> Card:
     """Card of one finding."""
     plan, v, e = found.plan, found.verdict, found.plan.expectation
     diverges = e is not None and e.order is None
@@ -76,7 +79,6 @@ def _card(record: Record, found: Finding) -> Card:
         ("Observed order", words.order(v.observed)),
         ("Interval", words.interval(v.interval)),
         ("Expected", verdicts.registered(e)),
-        ("Expectation from", (e.source if e else "") or "not given"),
     )
     falls = diverges and e is not None and e.stall is not None
     headline = (STALLS if falls else DIVERGES if diverges else PLAIN)[v.outcome]
@@ -96,8 +98,10 @@ def _card(record: Record, found: Finding) -> Card:
         short(found),
         audited.short(record, plan.run.solution) if finished else "",
         tuple(audited.seen(record, plan.run.solution)) if finished else (),
-        audited.edges(record, (plan.run.solution,)),
         finished,
+        (e.source if e else "") or "",
+        number,
+        getattr(plan.run, "solution", ""),
     )
 
 

@@ -2,7 +2,7 @@
 
 from mpm_verify.cases.mms.digits.records import Compared
 from mpm_verify.reports import words
-from mpm_verify.reports.components.show import Table
+from mpm_verify.reports.components.table import Table
 from mpm_verify.reports.sentences.digits import digits, scheme
 
 SHOWN = 4  # references, the nearest first

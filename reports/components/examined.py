@@ -1,6 +1,6 @@
 """Page of an Examination: sections with words, figures and tables, and every check beside what it is held against."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -9,10 +9,12 @@ import pandas as pd
 from mpm_verify.cases.harness.checks import Check, Examination
 from mpm_verify.cases.harness.store import Store, StoreError
 from mpm_verify.reports import words
+from mpm_verify.reports.components.badges import Badge, of_checks, shortened
 from mpm_verify.reports.components.film import Film
 from mpm_verify.reports.components.logs import Log
-from mpm_verify.reports.components.page import Add, Image, adder, template
-from mpm_verify.reports.components.show import Table
+from mpm_verify.reports.components.page import ALL, Add, Image, adder, whole
+from mpm_verify.reports.components.run_cards import RunCard
+from mpm_verify.reports.components.table import Table
 from mpm_verify.reports.sentences import failures, unjudged
 from mpm_verify.reports.sentences.remarks import lead, parameters
 
@@ -30,6 +32,7 @@ class Section:
     tables: Sequence[Table] = ()
     films: Sequence[Film] = ()
     wide: bool = False  # a single figure as wide as the page
+    runs: Sequence[RunCard] = ()
 
 
 Sections = Callable[[Examination, Add], Sequence[Section]]
@@ -39,10 +42,12 @@ def render(
     folder: Path,
     examination: Examination,
     sections: Sections,
-    kinds: Sequence[str] = ("svg", "pdf", "png"),
+    kinds: Sequence[str] = ALL,
     outcome: str = "",
     said: str = "",
     logs: Sequence[Log] = (),
+    found: Sequence[Badge] = (),
+    told: Mapping[str, str] | None = None,
 ) -> Path:
     """Write report.html, figures/ in these kinds, tables/checks.csv; `sections` draws what is special.
 
@@ -57,16 +62,20 @@ def render(
         if examination.checks:
             _write_csv(folder / "tables" / "checks.csv", examination.checks)
         missed = [check for check in examination.checks if check.outcome != "PASS"]
-        text = template("examination.html.j2").render(
+        text = whole(
+            "examination.html.j2",
+            examination.title,
             examination=examination,
+            found=shortened([*found, *of_checks(examination.checks)]),
             lead=said or lead(examination),
             outcome=outcome or str(examination.outcome),
             logs=logs,
             missed=checks_table("Found and expected", missed, group=True) if missed else None,
-            sections=sections(examination, adder(folder / "figures", kinds=kinds)),
+            sections=figures_first(sections(examination, adder(folder / "figures", kinds=kinds, told=told))),
             parameters=Table(
                 "Parameters", ("parameter", "value"), tuple(parameters(examination).items()), texts=("value",)
             ),
+            cite="",
             environment=Table(
                 "What computed it", ("", "version"), tuple(examination.environment.items()), texts=("version",)
             ),
@@ -75,6 +84,12 @@ def render(
         return folder / "report.html"
     except OSError as error:
         raise StoreError(f"cannot write the report into {folder}: {error.strerror}; the results are kept") from error
+
+
+def figures_first(sections: Sequence[Section]) -> Sequence[Section]:
+    """Sections, the first that has figures in front of all."""
+    first = next((one for one in sections if one.figures), None)
+    return sections if first is None else [first, *(one for one in sections if one is not first)]
 
 
 def checks_table(caption: str, checks: Sequence[Check], group: bool = False) -> Table:

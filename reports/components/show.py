@@ -1,65 +1,62 @@
-"""Tables of errors and orders as the page shows them: text cells; full digits are in the CSV files."""
+"""Tables of errors and orders as the page shows them, one row a level; full digits are in the CSV files."""
 
-from collections.abc import Iterable
-from dataclasses import dataclass
-from itertools import chain, pairwise
+from collections.abc import Sequence
 
 from mpm_verify.cases.harness.refinement import Series
 from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.cases.judging.order import Outcome
 from mpm_verify.cases.mms.run import NORMS, QUANTITIES, Run
 from mpm_verify.reports import words
+from mpm_verify.reports.components.table import Row, Table
 from mpm_verify.reports.figures.local_orders import orders
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences import verdicts
 from mpm_verify.reports.tables import mms as tables
 
 NAMES = {"u": "displacement u", "v": "velocity v", "F": "deformation gradient F", "sigma": "Cauchy stress"}
-Row = tuple[str, ...]
+WITH_ORDER = ("rms", "printed")  # norms whose local orders are told
 
 
-@dataclass(frozen=True)
-class Table:
-    """Table as text. `heads` row-heading columns come first; the others hold numbers, but those named in `texts`."""
-
-    caption: str
-    head: Row
-    rows: tuple[Row, ...]
-    heads: int = 1
-    texts: Row = ()
-
-
-def judged_errors(record: Record) -> Table:
-    """Errors of what the study judges."""
-    return _errors(record, "Judged errors", [(s, q, n) for s in record.series for q, n in _keys(record, s, "judged")])
+def judged(record: Record) -> Table:
+    """Errors, local orders and crossings of what the study judges, and of u in rms in any case."""
+    head = ("series", "cell size", "error", "order", "crossings")
+    rows: list[Row] = []
+    for s in record.series:
+        for quantity, norm in dict.fromkeys([*_keys(record, s, "judged"), ("u", "rms")]):
+            rows += _block(record, s, quantity, norm)
+    return Table("Errors and orders, one row a level", head, tuple(rows), heads=2, grouped=True)
 
 
-def shown_errors(record: Record, quantity: str) -> Table:
-    """Errors of one quantity that are shown only, in all norms."""
-    keys = [(s, q, n) for s in record.series for q, n in _keys(record, s, "shown") if q == quantity]
-    return _errors(record, f"Shown only: errors of the {NAMES[quantity]}", keys)
+def _block(record: Record, s: Series, quantity: str, norm: str) -> list[Row]:
+    """Rows of one quantity of a series, with the fitted order in their name."""
+    fitted = {tables.key(f.plan): words.order(f.verdict.observed) for f in record.findings}
+    fit = fitted.get((s.head, quantity, norm), words.DASH)
+    shown = "" if (quantity, norm) in _keys(record, s, "judged") else "shown only, "
+    name = f"{record.label(s.first)}: {words.quantity(quantity)} in {norm}; {shown}fitted order {fit}"
+    passed = tables.crossings(record)
+    step = {fine: words.order(p) for _, fine, p in orders(record, s, quantity, norm)}
+    return [
+        (name, words.cell_size(run.cells), text, step.get(run.cells, ""), words.few(passed.get((s.head, run.cells))))
+        for run, text in _told(record, s, quantity, norm)
+    ]
 
 
-def judged_orders(record: Record) -> Table:
-    """Local orders of what the study judges, with the fitted order."""
-    return _orders(
-        record,
-        "Judged: order between consecutive cell sizes",
-        [(s, *k) for s in record.series for k in _keys(record, s, "judged")],
-    )
-
-
-def shown_displacements(record: Record) -> Table:
-    """Local orders of u in rms where they are not judged."""
-    keys = [(s, "u", "rms") for s in record.series if ("u", "rms") in _keys(record, s, "shown")]
-    return _orders(record, "Shown only: order of u between consecutive cell sizes", keys)
-
-
-def shown_orders(record: Record) -> Table:
-    """Local orders of what else is only shown: the other quantities in rms, and u as printed."""
-    wanted = {(q, "rms") for q in QUANTITIES if q != "u"} | {("u", "printed")}
-    keys = [(s, *k) for k in sorted(wanted, key=_rank) for s in record.series if k in _keys(record, s, "shown")]
-    return _orders(record, "Shown only: order between consecutive cell sizes", keys)
+def shown(record: Record, quantity: str) -> Table:
+    """Errors of one quantity in every norm, with the orders of some; what is judged stands in its own table."""
+    columns = [name for norm in NORMS for name in ((norm, "order") if norm in WITH_ORDER else (norm,))]
+    rows: list[Row] = []
+    for s in record.series:
+        mine = _keys(record, s, "shown")
+        cells: dict[int, list[str]] = {run.cells: [] for run in s.runs}
+        for norm in NORMS:
+            there = (quantity, norm) in mine
+            step = {fine: words.order(p) for _, fine, p in orders(record, s, quantity, norm)}
+            for run, text in _told(record, s, quantity, norm):
+                more = [step.get(run.cells, "")] if norm in WITH_ORDER else []
+                cells[run.cells] += [text, *more] if there else ["judged", *[""] * len(more)]
+        rows += [(record.label(s.first), words.cell_size(n), *texts) for n, texts in cells.items()]
+    caption = f"Shown only: errors of the {NAMES[quantity]} and their orders"
+    return Table(caption, ("series", "cell size", *columns), tuple(rows), heads=2, grouped=True)
 
 
 def contamination(record: Record) -> Table:
@@ -82,7 +79,7 @@ def shown_verdicts(record: Record) -> Table:
     found = [f for f in record.findings if not f.counts]
     known = [f for f in found if f.plan.expectation or f.verdict.observed is not None]
     rows = tuple(_shown(record, f) for f in known)
-    return Table("Shown only: fitted orders", head, rows, heads=2, texts=head[4:])
+    return Table("Shown only: fitted orders", head, rows, heads=2, texts=head[4:], grouped=True)
 
 
 def _keys(record: Record, series: Series, role: str) -> list[tuple[str, str]]:
@@ -92,44 +89,15 @@ def _keys(record: Record, series: Series, role: str) -> list[tuple[str, str]]:
     return [k for k in every if known.get((series.head, *k), "shown") == role]
 
 
-def _rank(key: tuple[str, str]) -> tuple[int, int]:
-    return NORMS.index(key[1]), QUANTITIES.index(key[0])
-
-
-def _cells(record: Record) -> list[int]:
-    return sorted({run.cells for s in record.series for run in s.runs})
-
-
-def _errors(record: Record, caption: str, keys: Iterable[tuple[Series, str, str]]) -> Table:
-    """Table of errors, a column for each cell size."""
-    cells, rows = _cells(record), []
-    for s, quantity, norm in keys:
-        means = dict(record.errors(s, quantity, norm))
-        at = {run.cells: words.sci(means[run]) if run in means else _without(record, s, run) for run in s.runs}
-        rows.append(
-            (record.label(s.first), f"{words.quantity(quantity)}, {norm}", *(at.get(n, words.DASH) for n in cells))
-        )
-    return Table(caption, ("series", "error of, in", *(words.cell_size(n) for n in cells)), tuple(rows), heads=2)
+def _told(record: Record, s: Series, quantity: str, norm: str) -> Sequence[tuple[Run, str]]:
+    """Levels of a series with their error as text, or why there is none."""
+    means = dict(record.errors(s, quantity, norm))
+    return [(run, words.sci(means[run]) if run in means else _without(record, s, run)) for run in s.runs]
 
 
 def _without(record: Record, series: Series, run: Run) -> str:
     """Reason why a level has no error."""
     return "failed" if run in record.failed(series) else "not run"
-
-
-def _orders(record: Record, caption: str, keys: Iterable[tuple[Series, str, str]]) -> Table:
-    """Table of orders: a column for each pair of cell sizes, crossings per particle beside it, then the fit."""
-    cells, rows = _cells(record), []
-    passed = tables.crossings(record)
-    fitted = {tables.key(f.plan): words.order(f.verdict.observed) for f in record.findings}
-    columns = list(pairwise(cells))
-    for s, quantity, norm in keys:
-        found = {(a, b): words.order(p) for a, b, p in orders(record, s, quantity, norm)}
-        fit = fitted.get((s.head, quantity, norm), words.DASH)
-        steps = [(found.get((a, b), words.DASH), words.few(passed.get((s.head, b)))) for a, b in columns]
-        rows.append((record.label(s.first), f"{words.quantity(quantity)}, {norm}", *chain(*steps), fit))
-    pairs = [(f"{words.cell_size(a)} → {words.cell_size(b)}", "crossings") for a, b in columns]
-    return Table(caption, ("series", "order of, in", *chain(*pairs), "fitted"), tuple(rows), heads=2)
 
 
 def _shown(record: Record, found: Finding) -> Row:

@@ -1,52 +1,37 @@
 """Tables of the axes beside the cells: time step, particles per cell, position of the particles in their cells."""
 
-from itertools import pairwise
-
 from mpm_verify.cases.harness.axes import particle_axes, position_axes, time_axes
 from mpm_verify.cases.judging.fit import Fit
 from mpm_verify.reports import words
-from mpm_verify.reports.components.show import Table
+from mpm_verify.reports.components.table import Table
 from mpm_verify.reports.frames import Record
 from mpm_verify.solver.plugins import label
 
 CONFIDENCE = 0.95
-ARROW = "→"
 
 
 def time_step(record: Record) -> Table:
-    """Error of u in rms at each time step, the order between them, and the fraction of the first time step."""
-    axes = time_axes(record.study.runs, record.results)
-    courants = sorted({courant for a in axes for courant in a.courants}, reverse=True)
-    pairs, rows = list(pairwise(courants)), []
-    for a in axes:
-        errors = dict(zip(a.courants, a.errors, strict=True))
-        orders = dict(zip(pairwise(a.courants), a.orders, strict=True))
-        cells = (words.sci(errors.get(courant)) for courant in courants)
-        steps = (words.order(orders.get(pair)) for pair in pairs)
-        rows.append((record.label(a.run), words.cell_size(a.run.cells), *cells, *steps, words.percent(a.fractions[0])))
-    head = [f"C = {courant:g}" for courant in courants] + [f"order {a:g} {ARROW} {b:g}" for a, b in pairs]
-    return Table(
-        "Error of u in rms against the Courant number C",
-        ("series", "cell size", *head, "fraction of the time step"),
-        tuple(rows),
-        heads=2,
-    )
+    """Error of u in rms at each time step, the order from the one before, and the fraction of the first time step."""
+    rows = []
+    for a in time_axes(record.study.runs, record.results):
+        name = f"{record.label(a.run)}, cell size {words.cell_size(a.run.cells)}"
+        name += f"; fraction of the time step {words.percent(a.fractions[0])}"
+        for courant, error, order in zip(a.courants, a.errors, (None, *a.orders), strict=True):
+            rows.append((name, f"{courant:g}", words.sci(error), "" if order is None else words.order(order)))
+    head = ("series", "Courant number", "error", "order")
+    return Table("Error of u in rms against the Courant number", head, tuple(rows), heads=2, grouped=True)
 
 
 def particles(record: Record) -> Table:
     """Error of u in rms with each particle count, and the order in the spacing of the particles."""
-    axes = particle_axes(record.study.runs, record.results)
-    counts = sorted({count for a in axes for count in a.ppc})
-    pairs, rows = list(pairwise(counts)), []
-    for a in axes:
-        errors = dict(zip(a.ppc, a.errors, strict=True))
-        orders = dict(zip(pairwise(a.ppc), a.orders, strict=True))
+    rows = []
+    for a in particle_axes(record.study.runs, record.results):
         name = words.method(a.run.method) + (f", {label(a.run.solution)}" if len(record.solutions) > 1 else "")
-        cells = (words.sci(errors.get(count)) for count in counts)
-        rows.append((name, words.cell_size(a.run.cells), *cells, *(words.order(orders.get(pair)) for pair in pairs)))
-    head = [f"{count} per cell" for count in counts] + [f"order {a} {ARROW} {b}" for a, b in pairs]
-    caption = "Error of u in rms against the particles per cell"
-    return Table(caption, ("method", "cell size", *head), tuple(rows), heads=2)
+        name += f", cell size {words.cell_size(a.run.cells)}"
+        for count, error, order in zip(a.ppc, a.errors, (None, *a.orders), strict=True):
+            rows.append((name, str(count), words.sci(error), "" if order is None else words.order(order)))
+    head = ("series", "particles per cell", "error", "order")
+    return Table("Error of u in rms against the particles per cell", head, tuple(rows), heads=2, grouped=True)
 
 
 def scatter(record: Record) -> Table:
@@ -58,7 +43,7 @@ def scatter(record: Record) -> Table:
             ends = (words.sci(e) for e in (errors[0], low, mid, high))
             rows.append((record.label(a.run), words.cell_size(cells), str(len(errors)), *ends, ratio))
     head = ("series", "cell size", "runs", "usual position", "smallest", "median", "largest", "largest / smallest")
-    return Table("Error of u in rms over the positions of the particles", head, tuple(rows), heads=2)
+    return Table("Error of u in rms over the positions of the particles", head, tuple(rows), heads=2, grouped=True)
 
 
 def intervals(record: Record) -> Table:

@@ -2,7 +2,7 @@
 
 from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.reports import words
-from mpm_verify.reports.components.show import Table
+from mpm_verify.reports.components.table import Table
 from mpm_verify.reports.figures import style
 from mpm_verify.reports.figures.convergence import methods
 from mpm_verify.reports.figures.cost import Line, Row

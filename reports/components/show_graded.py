@@ -5,7 +5,7 @@ from statistics import median
 from mpm_verify.cases.mms.graded import Bounded, Saving, kind, savings
 from mpm_verify.cases.mms.run import Run
 from mpm_verify.reports import words
-from mpm_verify.reports.components.show import Table
+from mpm_verify.reports.components.table import Table
 from mpm_verify.reports.frames import Record
 from mpm_verify.solver.plugins import label
 

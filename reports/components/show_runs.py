@@ -6,7 +6,7 @@ from dataclasses import asdict, replace
 from mpm_verify.cases.harness.axes import cell_crossings
 from mpm_verify.cases.mms.run import Run
 from mpm_verify.reports import words
-from mpm_verify.reports.components.show import Row, Table
+from mpm_verify.reports.components.table import Row, Table
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences import failures
 from mpm_verify.solver.plugins import is_file, label, split

@@ -14,7 +14,7 @@ from matplotlib.ticker import NullLocator
 
 from mpm_verify.cases.harness.refinement import Series
 from mpm_verify.reports import words
-from mpm_verify.reports.figures import style
+from mpm_verify.reports.figures import drawn, style
 from mpm_verify.reports.frames import Record
 
 NORMS = ("rms", "printed")
@@ -72,7 +72,10 @@ def _panel(part: Figure | SubFigure, record: Record, series: Sequence[Series], q
     for s in series:
         found = [(run, error) for run, error in record.errors(s, quantity, norm) if error > 0]
         h, e = [1 / run.cells for run, _ in found], [error for _, error in found]
-        axes.plot(h, e, **style.look(methods(record), s.first.method, s.first.ppc).plot)
+        look = style.look(methods(record), s.first.method, s.first.ppc)
+        drawn.of_runs(
+            axes.plot(h, e, label=record.label(s.first, solution=False), **look.plot), [run for run, _ in found]
+        )
     cell_axis(axes, series)
     axes.set_yscale("log")
     if not any(line.get_xdata().size for line in axes.lines):

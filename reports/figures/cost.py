@@ -15,7 +15,7 @@ from matplotlib.lines import Line2D
 
 from mpm_verify.cases.mms.run import Run
 from mpm_verify.reports import words
-from mpm_verify.reports.figures import style
+from mpm_verify.reports.figures import drawn, style
 from mpm_verify.reports.frames import Record
 
 ROW, HEAD = 2.3, 0.9  # inches: height of a row of panels, and of legend and axis names
@@ -62,12 +62,15 @@ def cost_figure(record: Record, rows: Sequence[Row], quantity: str = "u", norm: 
 
 def _draw(left: Axes, right: Axes, record: Record, line: Line, quantity: str, norm: str) -> None:
     """Draw one line in both panels."""
-    points = []
+    points: list[tuple[float, float, float]] = []
+    runs: dict[tuple[float, float, float], Run] = {}
     for run in line.runs:
         result, error = record.result(run), record.error(run, quantity, norm)
         if result and error and result.scale.get(quantity):
             points.append((result.updates, result.cpu_s, error / result.scale[quantity]))
+            runs[points[-1]] = run
     points.sort()
     for panel, cost in ((left, 0), (right, 1)):
         if paid := [p for p in points if p[cost] > 0]:
-            panel.plot([p[cost] for p in paid], [p[2] for p in paid], **line.plot)
+            made = panel.plot([p[cost] for p in paid], [p[2] for p in paid], label=line.label, **line.plot)
+            drawn.of_runs(made, [runs[p] for p in paid])

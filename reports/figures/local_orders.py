@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from mpm_verify.cases.harness.refinement import Series
 from mpm_verify.cases.judging.fit import local_orders
 from mpm_verify.reports import words
-from mpm_verify.reports.figures import style
+from mpm_verify.reports.figures import drawn, style
 from mpm_verify.reports.figures.convergence import methods
 from mpm_verify.reports.frames import Record
 
@@ -33,13 +33,13 @@ def local_order_figure(record: Record, solution: str, quantity: str = "u", norm:
         figure = Figure(figsize=(5.2, 4.8), layout="constrained")
         axes = figure.subplots()
         cells = sorted({run.cells for s in series for run in s.runs})
-        drawn = [s for s in series if _draw(axes, record, s, cells, quantity, norm)]
+        shown = [s for s in series if _draw(axes, record, s, cells, quantity, norm)]
         _band(axes, record, solution, quantity, norm)
         axes.axhline(0, color=style.INK, linewidth=0.9)
         axes.set_xticks(range(len(cells) - 1), [f"1/{a} →\n1/{b}" for a, b in pairwise(cells)])
         axes.set_xlim(-0.5, max(len(cells) - 1.5, 0.5))
         axes.set(xlabel="from cell size to cell size", ylabel=f"local order of {words.quantity(quantity)}, {norm}")
-        style.legend(figure, methods(record), [(s.first.method, s.first.ppc) for s in drawn])
+        style.legend(figure, methods(record), [(s.first.method, s.first.ppc) for s in shown])
     return figure
 
 
@@ -48,7 +48,9 @@ def _draw(axes: Axes, record: Record, series: Series, cells: Sequence[int], quan
     found = orders(record, series, quantity, norm)
     positions = [(cells.index(a) + cells.index(b) - 1) / 2 for a, b, _ in found]
     look = style.look(methods(record), series.first.method, series.first.ppc)
-    axes.plot(positions, [p for *_, p in found], **look.plot)
+    fine = {run.cells: run for run in series.runs}
+    lines = axes.plot(positions, [p for *_, p in found], label=record.label(series.first, solution=False), **look.plot)
+    drawn.of_runs(lines, [fine[b] for _, b, _ in found])
     return bool(found)
 
 

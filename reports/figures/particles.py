@@ -3,6 +3,7 @@
 Where the lines fall to the right, the sums over particles are the error; where they are flat, the grid is.
 """
 
+from dataclasses import replace
 from itertools import pairwise
 from math import log10
 
@@ -15,7 +16,7 @@ from matplotlib.ticker import NullLocator
 
 from mpm_verify.cases.harness.axes import ParticleAxis, particle_axes
 from mpm_verify.reports import words
-from mpm_verify.reports.figures import style
+from mpm_verify.reports.figures import drawn, style
 from mpm_verify.reports.figures.convergence import methods
 from mpm_verify.reports.frames import Record
 
@@ -60,7 +61,8 @@ def _draw(panel: Axes, record: Record, found: list[ParticleAxis]) -> None:
     for number, (a, height) in enumerate(zip(found, heights, strict=True)):
         depth = 0.35 + 0.65 * (number + 1) / len(found)
         colour = tuple(1 - depth * (1 - part) for part in to_rgb(look.colour))
-        panel.plot(a.ppc, a.errors, color=colour, marker=look.marker)
+        lines = panel.plot(a.ppc, a.errors, color=colour, marker=look.marker, label=words.cell_size(a.run.cells))
+        drawn.of_runs(lines, [replace(a.run, ppc=count) for count in a.ppc])
         panel.annotate(
             words.cell_size(a.run.cells), (a.ppc[-1], 10**height), (8, 0), textcoords="offset points",
             va="center", fontsize=9.5, color=style.GREY,

@@ -1,12 +1,14 @@
 """Error of u against the Courant number on the finest cells, log-log: a flat line is an error of space."""
 
+from dataclasses import replace
+
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
 from mpm_verify.cases.harness.axes import TimeAxis, time_axes
 from mpm_verify.reports import words
-from mpm_verify.reports.figures import style
+from mpm_verify.reports.figures import drawn, style
 from mpm_verify.reports.figures.convergence import methods
 from mpm_verify.reports.frames import Record
 
@@ -31,7 +33,9 @@ def _draw(figure: Figure, record: Record, found: list[TimeAxis]) -> None:
     """Draw the errors, large time steps on the right."""
     axes = figure.subplots()
     for a in found:
-        axes.plot(a.courants, a.errors, **style.look(methods(record), a.run.method, a.run.ppc).plot)
+        look = style.look(methods(record), a.run.method, a.run.ppc)
+        lines = axes.plot(a.courants, a.errors, label=record.label(a.run, solution=False), **look.plot)
+        drawn.of_runs(lines, [replace(a.run, courant=courant) for courant in a.courants])
     ticks = sorted({courant for a in found for courant in a.courants})
     axes.set(xscale="log", yscale="log", xlabel=f"Courant number, {found[0].run.cells} cells a side")
     axes.set_xticks(ticks, [f"{courant:g}" for courant in ticks])

@@ -9,7 +9,7 @@ from mpm_verify.cases.harness.store import Store
 from mpm_verify.reports.components.examined import Section
 from mpm_verify.reports.components.film import EACH, MOST, film
 from mpm_verify.reports.components.page import Add
-from mpm_verify.reports.components.show import Table
+from mpm_verify.reports.components.table import Table
 from mpm_verify.reports.figures import column as draw
 from mpm_verify.reports.sentences import column as words
 from mpm_verify.reports.words import DASH, percent

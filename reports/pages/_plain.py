@@ -7,13 +7,14 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 
 from mpm_verify.cases.harness.checks import Examination
-from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.reports import words
+from mpm_verify.reports.components import run_cards
+from mpm_verify.reports.components.badges import of_findings
 from mpm_verify.reports.components.cards import summary
 from mpm_verify.reports.components.examined import Section, checks_table, render
 from mpm_verify.reports.components.page import Add
-from mpm_verify.reports.components.show import Table
-from mpm_verify.reports.figures import style
+from mpm_verify.reports.components.table import Table
+from mpm_verify.reports.figures import drawn, style
 from mpm_verify.reports.figures.convergence import cell_axis
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences import commands, controls, failures, verdicts
@@ -41,6 +42,7 @@ def page(
     made = render(
         record.store.folder, examination, lambda _, add: [*first, *sections(record, add), *more, last or runs(record)],
         outcome=str(found.outcome), said=f"{lead} {said(record)}".strip(),
+        found=of_findings(record, "verdicts") if study.plans else (), told=run_cards.told(record),
     )  # fmt: skip
     plain.write(record, record.store.folder / "tables")
     return made
@@ -66,7 +68,7 @@ def sections(record: Record, add: Add) -> list[Section]:
                   for (q, n), said in named.items()]  # fmt: skip
         told = [*record.study.words, *filter(None, [controls.sentence(record.analysis.controls)])]
         found.append(Section("verdicts", "Verdicts", told, images, [verdict_table(record)]))
-        found.append(Section("errors", "Errors and orders", tables=[levels(record, f) for f in record.findings]))
+        found.append(Section("errors", "Errors and orders", tables=[levels(record)]))
     if record.analysis.checks:
         found.append(Section("checks", "Checks", tables=[checks_table("Checks", record.analysis.checks, group=True)]))
     return found
@@ -85,14 +87,16 @@ def verdict_table(record: Record) -> Table:
     return Table("Verdicts", head, tuple(rows), texts=("quantity", "verdict", "expected", "reason"))
 
 
-def levels(record: Record, found: Finding) -> Table:
-    """Table of the levels of a finding, a row for each cell size."""
+def levels(record: Record) -> Table:
+    """Table of the levels of all findings, a row for each cell size."""
     rows = [
-        (record.named(level.h), words.sci(row["error"]), words.order(row["order"]), str(row["ended"]))
+        (f"{record.label(found.plan.run)}: {words.measured(found.plan, ', ')}", record.named(level.h),
+         words.sci(row["error"]), words.order(row["order"]), str(row["ended"]))
+        for found in record.findings
         for level, row in zip(found.levels, plain.levels(record, found), strict=True)
-    ]
-    title = f"{record.label(found.plan.run)}: {words.measured(found.plan, ', ')}"
-    return Table(title, (record.by, "error", "order", "failed"), tuple(rows), texts=("failed",))
+    ]  # fmt: skip
+    head = ("refinement", record.by, "error", "order", "failed")
+    return Table("Errors and orders, one row a level", head, tuple(rows), heads=2, texts=("failed",), grouped=True)
 
 
 def runs(record: Record) -> Section:
@@ -107,7 +111,8 @@ def runs(record: Record) -> Section:
             why = failures.failure(result.failure) if result.failure else ""
             ends = (result.status, str(result.steps), str(result.particles), f"{result.wall_s:.2f}", why)
         rows.append((*(str(getattr(run, name)) for name in names), *ends))
-    return Section("runs", "Runs", tables=[Table("All runs", head, tuple(rows), heads=0, texts=("status", "failed"))])
+    table = Table("All runs", head, tuple(rows), heads=0, texts=("status", "failed"))
+    return Section("runs", "Runs", tables=[table], runs=run_cards.cards(record) if record.study.plans else ())
 
 
 def errors(record: Record, quantity: str, norm: str) -> Figure:
@@ -115,16 +120,18 @@ def errors(record: Record, quantity: str, norm: str) -> Figure:
     methods = list(dict.fromkeys(getattr(s.first, "method", "") for s in record.series))
     heads = {f.plan.head for f in record.findings if (f.plan.quantity, f.plan.norm) == (quantity, norm)}
     judged = [s for s in record.series if s.head in heads]
-    drawn = [s for s in record.drawn if s in judged] or judged
+    shown = [s for s in record.drawn if s in judged] or judged
     with rc_context(style.RC):
         figure = Figure(figsize=style.PANEL, layout="constrained")
         axes = figure.subplots()
-        for s in drawn:
+        for s in shown:
             points = [(1 / run.cells, error) for run, error in record.errors(s, quantity, norm) if error > 0]
             look = style.look(methods, getattr(s.first, "method", ""), getattr(s.first, "ppc", 9))
-            axes.loglog(*zip(*points, strict=True), label=record.label(s.first), **look.plot) if points else None
+            if points:
+                lines = axes.loglog(*zip(*points, strict=True), label=record.label(s.first), **look.plot)
+                drawn.of_runs(lines, [run for run, error in record.errors(s, quantity, norm) if error > 0])
         _expected(axes, record, quantity, norm)
-        cell_axis(axes, drawn)
+        cell_axis(axes, shown)
         axes.set_ylabel("error" if quantity == norm else f"error of the {quantity}, {norm}".removesuffix(", error"))
         if axes.lines:
             axes.legend(frameon=False)

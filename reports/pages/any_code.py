@@ -6,7 +6,7 @@ from mpm_verify.cases.any_code.case import Extrapolated
 from mpm_verify.cases.any_code.run import HALF
 from mpm_verify.reports import words
 from mpm_verify.reports.components.examined import Section
-from mpm_verify.reports.components.show import Table
+from mpm_verify.reports.components.table import Table
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.pages import _plain
 from mpm_verify.reports.sentences import any_code, failures

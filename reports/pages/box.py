@@ -9,7 +9,7 @@ from mpm_verify.cases.box.run import ROWS, Run
 from mpm_verify.cases.harness.store import StoreError
 from mpm_verify.reports.components.examined import Section
 from mpm_verify.reports.components.page import Add, adder
-from mpm_verify.reports.components.show import Table
+from mpm_verify.reports.components.table import Table
 from mpm_verify.reports.figures import box as draw
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.pages import _plain

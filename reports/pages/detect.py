@@ -8,7 +8,7 @@ from mpm_verify.cases.detect.rates import Row, alone, real, redundant
 from mpm_verify.cases.detect.run import CHECKS
 from mpm_verify.reports.components.examined import Section
 from mpm_verify.reports.components.page import Add, adder
-from mpm_verify.reports.components.show import Table
+from mpm_verify.reports.components.table import Table
 from mpm_verify.reports.figures.detect import matrix
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.pages import _plain

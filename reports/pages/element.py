@@ -9,7 +9,7 @@ from mpm_verify.cases.harness.checks import Curves, Examination
 from mpm_verify.reports.components.examined import Section, checks_table
 from mpm_verify.reports.components.examined_study import page as examined_page
 from mpm_verify.reports.components.page import Add, Image
-from mpm_verify.reports.components.show import Table
+from mpm_verify.reports.components.table import Table
 from mpm_verify.reports.figures import element as draw
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences.remarks import notes

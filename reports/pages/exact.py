@@ -8,7 +8,7 @@ from mpm_verify.cases.harness.checks import Examination
 from mpm_verify.reports.components.examined import Section
 from mpm_verify.reports.components.examined_study import page as examined_page
 from mpm_verify.reports.components.page import Add
-from mpm_verify.reports.components.show import Table
+from mpm_verify.reports.components.table import Table
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences import exact as said
 from mpm_verify.reports.sentences.remarks import sentence

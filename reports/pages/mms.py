@@ -2,7 +2,7 @@
 
 import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from matplotlib.figure import Figure
@@ -11,10 +11,12 @@ from mpm_verify.cases.harness.store import Store, StoreError
 from mpm_verify.cases.harness.study import Arrays
 from mpm_verify.cases.mms.run import QUANTITIES, Run
 from mpm_verify.reports import words
-from mpm_verify.reports.components import audited, show, show_axes, show_graded, show_runs
+from mpm_verify.reports.components import audited, run_cards, show, show_axes, show_graded, show_runs
+from mpm_verify.reports.components.asides import asides
+from mpm_verify.reports.components.badges import of_findings, shortened
 from mpm_verify.reports.components.cards import cards, summary
 from mpm_verify.reports.components.logs import failed
-from mpm_verify.reports.components.page import Add, Image, adder, template
+from mpm_verify.reports.components.page import Add, Image, adder, whole
 from mpm_verify.reports.components.show_cost import figure_rows, overview
 from mpm_verify.reports.components.stalls import looked, stalls
 from mpm_verify.reports.figures import graded
@@ -67,20 +69,28 @@ def page(record: Record, vtk: bool = False, field: tuple[int, int] = (CELLS, PPC
 
 def _page(record: Record, folder: Path, field: tuple[int, int]) -> str:
     """Text of the page; figures are drawn on the way."""
-    return template("report.html.j2").render(
+    told, verdicts = run_cards.told(record), cards(record)
+    return whole(
+        "report.html.j2",
+        record.study.title,
         record=record,
         study=record.study,
+        outcome=str(record.analysis.outcome),
+        found=shortened(of_findings(record)),
         finding=headline(record),
         summary=summary(record),
-        cards=cards(record),
+        cards=verdicts,
+        asides=asides(record, verdicts),
+        runs=run_cards.cards(record),
+        cite="",
         meaning=words.MEANING,
-        sections=[_solution(record, solution, folder, field) for solution in record.solutions],
+        sections=[_solution(record, solution, folder, field, told) for solution in record.solutions],
         show=show,
         show_runs=show_runs,
         show_axes=show_axes,
         stalls=stalls(record),
         logs=failed(record),
-        cost=_cost(record, folder),
+        cost=_cost(record, folder, told),
         overview=overview,
         slower=any((s.first.method, s.first.solution) == ("mpm", "axis_aligned") for s in record.series),
         graded=show_graded if graded.found(record) else None,
@@ -92,10 +102,12 @@ def _page(record: Record, folder: Path, field: tuple[int, int]) -> str:
     )
 
 
-def _solution(record: Record, solution: str, folder: Path, field: tuple[int, int]) -> dict[str, object]:
+def _solution(
+    record: Record, solution: str, folder: Path, field: tuple[int, int], told: Mapping[str, str]
+) -> dict[str, object]:
     """Figures and blind spots of one solution; figure files carry its name where the study has several."""
     end = "_" + re.sub(r"[^A-Za-z0-9]+", "_", label(solution)) if len(record.solutions) > 1 else ""
-    add = adder(folder, end)
+    add = adder(folder, end, told=told)
     drawn = convergence(record, solution)
     add("figure1", drawn["figure1"], "")
     chosen = [choose(record, method, solution, *field) for method in methods(record)]
@@ -130,12 +142,12 @@ def _solution(record: Record, solution: str, folder: Path, field: tuple[int, int
     }
 
 
-def _cost(record: Record, folder: Path) -> Image | None:
+def _cost(record: Record, folder: Path, told: Mapping[str, str]) -> Image | None:
     """Figure of error against cost, where there are methods enough to compare."""
     if not compares(record):
         return None
     drawn = cost_figure(record, figure_rows(record))
-    return adder(folder, "")("cost", drawn, "Error of u over the exact rms, against updates and time.")
+    return adder(folder, "", told=told)("cost", drawn, "Error of u over the exact rms, against updates and time.")
 
 
 def _maybe(add: Add, name: str, figure: Figure | None, alt: str) -> Image | None:

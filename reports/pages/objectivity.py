@@ -12,7 +12,7 @@ from mpm_verify.cases.objectivity.rates import FIGURE2 as KINEMATIC
 from mpm_verify.reports.components.examined import Section, checks_table
 from mpm_verify.reports.components.examined_study import page as examined_page
 from mpm_verify.reports.components.page import Add
-from mpm_verify.reports.components.show import Table
+from mpm_verify.reports.components.table import Table
 from mpm_verify.reports.figures import objectivity as draw
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences.remarks import notes

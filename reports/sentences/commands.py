@@ -5,6 +5,7 @@ import shlex
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import fields
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,11 @@ from mpm_verify.mms.discretisation import axisymmetric, dimension
 from mpm_verify.reports.sentences import any_code, own_solver, verdicts
 from mpm_verify.solver.failure import FailureKind
 from mpm_verify.solver.plugins import METHODS, SOLUTIONS, available, canonical, create, is_file, label, split
+
+COMMANDS = {  # of cases whose command has an option for each field of a run
+    "mms": "mms", "box": "box", "wave_bar": "wave_bar", "column": "column", "benchmark": "benchmark {run.problem}",
+    "element": "material {run.material}",
+}  # fmt: skip
 
 
 def reason(study: Study[Any], found: Finding) -> str:
@@ -164,6 +170,26 @@ def typed(study: Study[Any], plan: QuantityPlan[Any], wanted: Wanted) -> list[st
         if value != usual[name] or name == "ppc":
             words += [f"--{name.replace('_', '-')}", relative(str(value))]
     return replaced(words, "--cells", ",".join(map(str, wanted.cells)))
+
+
+def of_run(study: Study[Any], run: Any) -> str:
+    """Command that runs this run; empty where none is known: of numbers that were given, and of particles elsewhere."""
+    if run.given or study.case not in COMMANDS or any(getattr(run, "offset", ())):
+        return ""
+    asked = getattr(import_module(f"mpm_verify.cases.{study.case}.run"), "AXES", {})
+    words = ["verify", *COMMANDS[study.case].format(run=run).split()]
+    for item in fields(run):
+        value = getattr(run, item.name)
+        if f"{{run.{item.name}}}" not in COMMANDS[study.case] and (value != item.default or item.name in asked):
+            words += [f"--{item.name.replace('_', '-')}", relative(typed_value(value))]
+    return shlex.join(words)
+
+
+def typed_value(value: Any) -> str:
+    """Value of a field as it is typed."""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return ",".join(map(str, value)) if isinstance(value, tuple) else str(value)
 
 
 def replaced(words: Sequence[str], option: str, value: str) -> list[str]:
