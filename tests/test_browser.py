@@ -13,6 +13,8 @@ import numpy as np
 import pytest
 from selenium import webdriver
 from selenium.webdriver.chrome.service import Service
+from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.common.keys import Keys
 
 from mpm_verify.cases.harness.analysis import Analysis
 from mpm_verify.cases.harness.build import Asked, build
@@ -200,6 +202,120 @@ def test_unfinished_study(browser: webdriver.Chrome, unfinished: Path, width: in
 def test_figures_take_the_width_of_a_phone(browser: webdriver.Chrome, page: Path) -> None:
     assert look(browser, page, 360) == {}
     assert browser.execute_script(SMALLEST) > 0.8
+
+
+# ---- pointer and keyboard
+
+
+def opened(browser: webdriver.Chrome, page: Path) -> Callable[[str], Any]:
+    """Show a page as wide as a desk, and give the query of one of its elements."""
+    look(browser, page, 1280)
+    return lambda selector: browser.find_element("css selector", selector)
+
+
+FIRST = "#figure1 + .panels figure:first-child"  # error of u in rms
+COVERED = "return getComputedStyle(document.querySelector(arguments[0])).display"
+
+
+def test_points_tell_their_run_and_open_its_card(browser: webdriver.Chrome, page: Path) -> None:
+    """By pointer and by keys; the card has parameters, errors, command and a picture, and closes by Escape."""
+    one = opened(browser, page)
+    points = browser.find_elements("css selector", f"{FIRST} .point")
+    assert len(points) == sum(map(len, fixtures.U_RMS.values()))
+    assert [point.get_attribute("tabindex") for point in points].count("0") == 1
+    browser.execute_script("arguments[0].focus()", points[0])
+    assert (
+        one(".tip").text
+        == "CPDI, 1 per cell, cells 8, Courant 0.4: rms errors u 2.884e-3, v 9.229e-1, F 3.172e-2, σ 2.596e2"
+    )
+    points[0].send_keys(Keys.ARROW_RIGHT)
+    assert "cells 16, Courant 0.4: rms errors u 1.029e-3" in one(".tip").text
+    browser.switch_to.active_element.send_keys(Keys.ENTER)
+    card = one("dialog")
+    assert card.get_attribute("open") is not None
+    assert card.find_element("css selector", "h2").text == "CPDI, 1 per cell, cells 16, Courant 0.4"
+    for said in ("rms 1.029e-3, max 3.190e-3", "finished", "verify mms --method cpdi --solution axis_aligned"):
+        assert said in card.text
+    assert card.find_element("css selector", "img").get_attribute("alt")
+    ActionChains(browser).send_keys(Keys.ESCAPE).perform()
+    assert card.get_attribute("open") is None
+    assert browser.switch_to.active_element == points[1]
+    ActionChains(browser).move_to_element(points[3]).perform()
+    assert "cells 64" in one(".tip").text
+    points[3].click()
+    assert "cells 64" in one("dialog h2").text
+    one("dialog button").click()
+    assert one("dialog").get_attribute("open") is None
+
+
+def test_a_series_is_hidden_with_its_points(browser: webdriver.Chrome, page: Path) -> None:
+    one = opened(browser, page)
+    button = one(f"{FIRST} .series button:nth-child(2)")
+    assert button.text == "CPDI, 4 per cell"
+    assert count(browser, f"{FIRST} .off") == 0
+    button.click()
+    assert count(browser, f"{FIRST} .point.off") == len(fixtures.U_RMS["cpdi", 4])
+    assert browser.execute_script(COVERED, f"{FIRST} [id$='-series-1-0']") == "none"
+    assert browser.execute_script(COVERED, f"{FIRST} [id$='-series-0-0']") != "none"
+    button.send_keys(Keys.SPACE)
+    assert count(browser, f"{FIRST} .off") == 0
+
+
+SHOWN = """
+return [...document.querySelectorAll("#orders + div + .scroll tbody:first-of-type tr:not(.group):not([hidden])")]
+  .slice(0, arguments[0]).map(row => row.cells[1].textContent)
+"""
+
+
+def test_tables_sort_within_their_blocks_and_filter(browser: webdriver.Chrome, page: Path) -> None:
+    one = opened(browser, page)
+    first = browser.execute_script(SHOWN, 5)
+    assert [float(e) for e in first] == list(fixtures.U_RMS["cpdi", 1])
+    head = one("#orders + div + .scroll th:nth-child(2) button")
+    head.click()
+    assert [float(e) for e in browser.execute_script(SHOWN, 5)] == sorted(fixtures.U_RMS["cpdi", 1])
+    head.send_keys(Keys.ENTER)
+    assert browser.execute_script(SHOWN, 5) == first
+    assert one("#orders + div + .scroll th:nth-child(2)").get_attribute("aria-sort") == "descending"
+    one("#orders + div + .scroll input").send_keys("MPM, 9 per cell: u")
+    assert one("#orders + div + .scroll output").text == "5 of 30 rows"
+    assert count(browser, "#orders + div + .scroll .group:not([hidden])") == 1
+
+
+TREE = """
+const every = selector => [...document.querySelectorAll(selector)];
+const named = one => one.getAttribute("aria-label") || one.textContent.trim();
+return {
+  landmarks: ["header", "nav[aria-label]", "main", "footer"].map(one => every(`body > ${one}`).length),
+  nameless: every("a, button, input, svg[role=img], [role=region]").filter(one => !named(one)).length,
+  dead: every('a[href^="#"]').filter(one => !document.getElementById(one.hash.slice(1))).length,
+  twice: every("[id]").length - new Set(every("[id]").map(one => one.id)).size,
+}
+"""
+
+
+def test_landmarks_names_and_links(browser: webdriver.Chrome, page: Path) -> None:
+    """Each control has a name, each link a goal, each name one element; the first stop leads past the contents."""
+    opened(browser, page)
+    assert browser.execute_script(TREE) == {"landmarks": [1, 1, 1, 1], "nameless": 0, "dead": 0, "twice": 0}
+    browser.execute_script("document.activeElement.blur(); scrollTo(0, 0)")
+    ActionChains(browser).send_keys(Keys.TAB).perform()
+    assert browser.switch_to.active_element.text == "Skip to the content"
+
+
+def test_what_is_folded_unfolds_for_a_link_and_for_paper(browser: webdriver.Chrome, page: Path) -> None:
+    look(browser, page, 1280)
+    browser.get(page.as_uri())
+    folded = count(browser, "details:not([open])")
+    assert folded > 5
+    goal = browser.execute_script("return document.querySelector('.run').id")
+    browser.execute_script("location.hash = arguments[0]", goal)
+    assert count(browser, f"details[open] > #{goal}[open]") == 1
+    closed = "document.querySelectorAll('details:not([open])').length"
+    browser.execute_script(f"addEventListener('beforeprint', () => {{ window.folded_on_paper = {closed} }})")
+    browser.execute_cdp_cmd("Page.printToPDF", {})
+    assert browser.execute_script("return window.folded_on_paper") == 0
+    assert count(browser, "details:not([open])") == folded - 2
 
 
 # ---- examinations: a function that makes the page, and how many images it has

@@ -181,6 +181,15 @@ def test_csv_round_trips_to_the_stored_numbers(folder: Path) -> None:
         assert (runs.loc[result.digest, "wall_s"], runs.loc[result.digest, "dt"]) == (result.wall_s, result.dt)
 
 
+def test_the_data_of_a_figure_are_what_is_stored(folder: Path) -> None:
+    data = pd.read_csv(folder / "figures" / "figure1_rms.csv")
+    assert set(data.series) == {f"{words.method(method)}, {ppc} per cell" for method, ppc in fixtures.U_RMS}
+    for (method, ppc), errors in fixtures.U_RMS.items():
+        mine = data[data.series == f"{words.method(method)}, {ppc} per cell"]
+        np.testing.assert_array_equal(mine.iloc[:, 3], errors)
+        np.testing.assert_array_equal(mine.iloc[:, 2], [1 / n for n in fixtures.CELLS[: len(errors)]])
+
+
 def test_orders_of_the_table_of_the_paper(folder: Path) -> None:
     orders = pd.read_csv(folder / "tables" / "orders.csv")
     wanted = orders[(orders.method == "cpdi") & (orders.ppc == 4) & (orders.quantity == "u")]

@@ -13,6 +13,7 @@ from mpm_verify.reports.components.badges import Badge, of_checks, shortened
 from mpm_verify.reports.components.film import Film
 from mpm_verify.reports.components.logs import Log
 from mpm_verify.reports.components.page import ALL, Add, Image, adder, whole
+from mpm_verify.reports.components.references import Cited
 from mpm_verify.reports.components.run_cards import RunCard
 from mpm_verify.reports.components.table import Table
 from mpm_verify.reports.sentences import failures, unjudged
@@ -48,6 +49,7 @@ def render(
     logs: Sequence[Log] = (),
     found: Sequence[Badge] = (),
     told: Mapping[str, str] | None = None,
+    cite: Cited | None = None,
 ) -> Path:
     """Write report.html, figures/ in these kinds, tables/checks.csv; `sections` draws what is special.
 
@@ -75,7 +77,7 @@ def render(
             parameters=Table(
                 "Parameters", ("parameter", "value"), tuple(parameters(examination).items()), texts=("value",)
             ),
-            cite="",
+            cite=cite,
             environment=Table(
                 "What computed it", ("", "version"), tuple(examination.environment.items()), texts=("version",)
             ),

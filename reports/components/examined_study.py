@@ -9,6 +9,7 @@ from mpm_verify.cases.harness.store import StoreError
 from mpm_verify.reports.components.examined import Section, Sections, render
 from mpm_verify.reports.components.logs import failed
 from mpm_verify.reports.components.page import Add
+from mpm_verify.reports.components.references import cited
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences.remarks import leads
 
@@ -30,7 +31,7 @@ def page(
         return [*overview(found, add), *every(found, sections, add)]
 
     return render(record.store.folder, whole(record, found), drawn, kinds, said=" ".join(leads(found)),
-                  logs=failed(record))  # fmt: skip
+                  logs=failed(record), cite=cited(record))  # fmt: skip
 
 
 def whole(record: Record, found: Mapping[str, Examination]) -> Examination:

@@ -59,7 +59,7 @@ def template(name: str) -> Template:
 
 def whole(name: str, title: str, **values: Any) -> str:
     """Page from a template of its content: within the frame of all pages, with a table of contents."""
-    top, _, rest = template(name).render(**values).partition(HERE)
+    top, _, rest = template(name).render(title=title, **values).partition(HERE)
     found = re.findall(r'<h2 id="([^"]+)">(.*?)</h2>', rest, re.DOTALL)
     contents = [(key, Markup(heading)) for key, heading in found]
     return template("page.html.j2").render(title=title, top=Markup(top), rest=Markup(rest), contents=contents)

@@ -28,7 +28,10 @@ def page(path: Path, a: Record, b: Record, found: Sequence[Change], both: int, t
         f"{a.study.title}: {a.store.folder} against {b.store.folder}",
         study=a.study,
         folders=(a.store.folder, b.store.folder),
-        found=[Badge("FAIL" if some else "PASS", str(len(some)), KINDS[kind], kind) for kind, some in mine.items()],
+        found=[
+            Badge("FAIL" if some else "PASS", str(len(some)), f"{KINDS[kind].lower()} differ", kind)
+            for kind, some in mine.items()
+        ],
         tables=[(kind, KINDS[kind], table(KINDS[kind], some)) for kind, some in mine.items()],
         both=both,
         count=len(found),

@@ -13,6 +13,7 @@ from mpm_verify.reports.components.badges import of_findings
 from mpm_verify.reports.components.cards import summary
 from mpm_verify.reports.components.examined import Section, checks_table, render
 from mpm_verify.reports.components.page import Add
+from mpm_verify.reports.components.references import cited
 from mpm_verify.reports.components.table import Table
 from mpm_verify.reports.figures import drawn, style
 from mpm_verify.reports.figures.convergence import cell_axis
@@ -42,7 +43,7 @@ def page(
     made = render(
         record.store.folder, examination, lambda _, add: [*first, *sections(record, add), *more, last or runs(record)],
         outcome=str(found.outcome), said=f"{lead} {said(record)}".strip(),
-        found=of_findings(record, "verdicts") if study.plans else (), told=run_cards.told(record),
+        found=of_findings(record, "verdicts") if study.plans else (), told=run_cards.told(record), cite=cited(record),
     )  # fmt: skip
     plain.write(record, record.store.folder / "tables")
     return made

@@ -9,6 +9,7 @@ from mpm_verify.cases.column.run import ColumnResult, ColumnRun
 from mpm_verify.cases.harness.store import Store, StoreError
 from mpm_verify.reports.components.examined import Section, checks_table, render
 from mpm_verify.reports.components.page import Add
+from mpm_verify.reports.components.references import cited
 from mpm_verify.reports.components.table import Table
 from mpm_verify.reports.export.column_files import files, tables
 from mpm_verify.reports.figures import column as draw
@@ -23,7 +24,7 @@ from mpm_verify.reports.words import DASH, percent
 def page(record: Record, vtk: bool = False) -> Path:
     """Write the page of a study, its tables, and with `vtk` the files of its snapshots. Raises StoreError."""
     analysis, store, folder = record.analysis.more, record.store, record.store.folder
-    made = render(folder, analysis.examination, lambda _, add: sections(analysis, store, add))
+    made = render(folder, analysis.examination, lambda _, add: sections(analysis, store, add), cite=cited(record))
     try:
         tables(analysis, store, folder / "tables")
         if vtk:

@@ -17,6 +17,7 @@ from mpm_verify.reports.components.badges import of_findings, shortened
 from mpm_verify.reports.components.cards import cards, summary
 from mpm_verify.reports.components.logs import failed
 from mpm_verify.reports.components.page import Add, Image, adder, whole
+from mpm_verify.reports.components.references import cited
 from mpm_verify.reports.components.show_cost import figure_rows, overview
 from mpm_verify.reports.components.stalls import looked, stalls
 from mpm_verify.reports.figures import graded
@@ -82,7 +83,7 @@ def _page(record: Record, folder: Path, field: tuple[int, int]) -> str:
         cards=verdicts,
         asides=asides(record, verdicts),
         runs=run_cards.cards(record),
-        cite="",
+        cite=cited(record),
         meaning=words.MEANING,
         sections=[_solution(record, solution, folder, field, told) for solution in record.solutions],
         show=show,

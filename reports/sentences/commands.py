@@ -176,7 +176,7 @@ def of_run(study: Study[Any], run: Any) -> str:
     """Command that runs this run; empty where none is known: of numbers that were given, and of particles elsewhere."""
     if run.given or study.case not in COMMANDS or any(getattr(run, "offset", ())):
         return ""
-    asked = getattr(import_module(f"mpm_verify.cases.{study.case}.run"), "AXES", {})
+    asked = {"method", "solution", *getattr(import_module(f"mpm_verify.cases.{study.case}.run"), "AXES", {})}
     words = ["verify", *COMMANDS[study.case].format(run=run).split()]
     for item in fields(run):
         value = getattr(run, item.name)
