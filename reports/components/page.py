@@ -22,7 +22,7 @@ COLOURS = {  # of figures, by the variable of report.css that they follow in the
     style.INK: "ink", style.GREY: "soft", style.LIGHT: "grid", "#ffffff": "paper", "#f4f1ee": "strip",
     "#e8d5a3": "sand",
     **dict(zip((c.lower() for c in style.COLOURS),
-               ("blue", "orange", "green", "pink", "amber", "ink", "sky", "brown"), strict=True)),
+               ("blue", "orange", "green", "pink", "amber", "black", "sky", "brown"), strict=True)),
 }  # fmt: skip
 
 

@@ -11,8 +11,8 @@ from mpm_verify.reports.components.take import File, encoded
 
 Row = tuple[str, ...]
 LONG = 24  # characters from which on a cell is broken into lines, see the macro `cell` and `td.long`
-BROKEN = 20  # characters that such a cell needs at least
-SIZES = {"s": 325.0, "m": 680.0, "l": 890.0}  # pixels that a table of each size needs at most, see stacked.css.j2
+BROKEN = 15  # characters that such a cell needs at least
+SIZES = {"s": 325.0, "m": 680.0, "l": 950.0}  # pixels that a table of each size needs at most, see stacked.css.j2
 SOME = 4  # rows, from which on what all of them say is said once
 
 
@@ -71,7 +71,7 @@ class Table:
         """Least of SIZES for these columns, by the characters that cannot be broken; `x` where there is none."""
         widths = [max(self._widths(k)) for k in columns]
         needed = {"s": sum(8.2 * w + 11.2 for w in widths)}
-        needed |= dict.fromkeys("ml", sum(9.0 * w + 22.4 for w in widths))
+        needed |= dict.fromkeys("ml", sum(9.0 * w + 16.0 for w in widths))
         return next((size for size, most in SIZES.items() if needed[size] <= most), "x")
 
     def _widths(self, column: int) -> Iterator[int]:
