@@ -64,7 +64,7 @@ def sections(record: Record, add: Add) -> list[Section]:
         named = {(f.plan.quantity, f.plan.norm): words.measured(f.plan, ", ") for f in record.findings}
         orders = any(plan.expectation and plan.expectation.order is not None for plan in record.study.plans)
         line = "; the dashed line has the expected order" if orders else ""
-        images = [(add(f"error_{q}_{n}", errors(record, q, n), f"Error of {q} against cell size."),
+        images = [(add(f"error_{q}_{n}", errors(record, q, n), alt(record, q, n)),
                    f"Error of the {said} against cell size{line}.".replace("of the error ", ""))
                   for (q, n), said in named.items()]  # fmt: skip
         told = [*record.study.words, *filter(None, [controls.sentence(record.analysis.controls)])]
@@ -73,6 +73,14 @@ def sections(record: Record, add: Add) -> list[Section]:
     if record.analysis.checks:
         found.append(Section("checks", "Checks", tables=[checks_table("Checks", record.analysis.checks, group=True)]))
     return found
+
+
+def alt(record: Record, quantity: str, norm: str) -> str:
+    """Text of the figure of errors: what came out of each refinement."""
+    mine = [f for f in record.findings if (f.plan.quantity, f.plan.norm) == (quantity, norm)]
+    told = [f"{record.label(f.plan.run)}: order {words.order(f.verdict.observed)}, {badge(f)}" for f in mine]
+    of = "" if quantity == norm else f" of {quantity}"
+    return f"Error{of} against cell size, both axes logarithmic. {'; '.join(told)}."
 
 
 def verdict_table(record: Record) -> Table:

@@ -39,7 +39,9 @@ def sections(record: Record, add: Add) -> list[Section]:
     rest = Section("rest", "The sand at rest", [said.NOTES], tables=[table])
     if not runs:
         return [rest]
-    sand = add("sand", draw.sand(runs[:PANELS]), "Particles by the vertical stress that each carries.")
+    idle = "; ".join(f"{label} {100 * one.values['free']:.0f} %" for label, _, one in rested)
+    alt = f"Particles by the vertical stress that each carries. Without any stress: {idle}."
+    sand = add("sand", draw.sand(runs[:PANELS]), alt)
     carried = add("rows", draw.rows(runs), "Vertical stress over weight, and K, of each row.")
     came = add("times", draw.times(runs), "Particles without stress, and top, against time.")
     return [

@@ -34,7 +34,11 @@ def sections(record: Record, add: Add) -> list[Section]:
     checks = asked(record)
     if not real(found.rows):
         return []
-    image = add("matrix", matrix(found.rows, checks), "Fraction of each class of defects that each check notices.")
+    mine = real(found.rows)
+    counts = {check: sum(check in row.changed for row in mine) for check in checks}
+    most = max(counts, key=lambda check: counts[check])
+    alt = f"Fraction of each class of defects that each check notices; {most} most, {counts[most]} of {len(mine)}."
+    image = add("matrix", matrix(found.rows, checks), alt)
     told = "Per cent of the defects of a class that a check notices; in brackets how many were planted."
     return [
         Section("rates", "Rates", tables=[rate_table(found)]),

@@ -24,7 +24,7 @@ from mpm_verify.reports.figures import graded
 from mpm_verify.reports.figures.convergence import convergence, methods
 from mpm_verify.reports.figures.cost import cost_figure
 from mpm_verify.reports.figures.error_field import CELLS, PPC, choose, error_field
-from mpm_verify.reports.figures.local_orders import local_order_figure
+from mpm_verify.reports.figures.local_orders import local_order_figure, orders
 from mpm_verify.reports.figures.particles import particles
 from mpm_verify.reports.figures.position import position
 from mpm_verify.reports.figures.time_step import time_step
@@ -33,7 +33,7 @@ from mpm_verify.reports.sentences import controls, norms
 from mpm_verify.reports.sentences.headline import headline
 from mpm_verify.reports.sentences.remarks import left_out
 from mpm_verify.reports.tables import mms as tables
-from mpm_verify.reports.tables.cost import compares
+from mpm_verify.reports.tables.cost import compares, costs
 from mpm_verify.solver.plugins import label
 
 TIME = "Error of u in rms against the Courant number on the finest cells, both axes logarithmic; numbers in the table."
@@ -134,7 +134,7 @@ def _solution(
         "orders": add(
             "local_orders",
             local_order_figure(record, solution),
-            "Local orders of u in rms; the table below holds the numbers.",
+            _orders_alt(record, solution),
         ),
         "fields": [image for image in fields if image],
         "unread": left_out("particles", ", ".join(unread)) if unread else "",
@@ -148,7 +148,10 @@ def _cost(record: Record, folder: Path, told: Mapping[str, str]) -> Image | None
     if not compares(record):
         return None
     drawn = cost_figure(record, figure_rows(record))
-    return adder(folder, "", told=told)("cost", drawn, "Error of u over the exact rms, against updates and time.")
+    reached = [(row["relative_error"], words.method(row["method"])) for row in costs(record) if row["relative_error"]]
+    least = f" The least on the finest cells: {words.sci(min(reached)[0])} by {min(reached)[1]}." if reached else ""
+    alt = f"Error of u over the exact rms, against updates and time.{least}"
+    return adder(folder, "", told=told)("cost", drawn, alt)
 
 
 def _maybe(add: Add, name: str, figure: Figure | None, alt: str) -> Image | None:
@@ -189,6 +192,13 @@ def _alt(record: Record, solution: str, norm: str) -> str:
         text = f"{words.series(s.first)}: {' to '.join(ends) or 'no error'}"
         parts.append(text + (f", {words.count(len(failed), 'run')} failed." if failed else "."))
     return " ".join(parts)
+
+
+def _orders_alt(record: Record, solution: str) -> str:
+    """Text of the figure of local orders: the last of each series."""
+    found = [(s, orders(record, s, "u", "rms")) for s in record.drawn if s.first.solution == solution]
+    last = [f"{words.series(s.first)} {words.order(steps[-1][2])}" for s, steps in found if steps]
+    return f"Local orders of u in rms; on the finest cells: {', '.join(last) or 'none'}."
 
 
 def _sweep(folder: Path, started: float) -> None:
