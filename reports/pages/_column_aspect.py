@@ -6,7 +6,7 @@ from mpm_verify.cases.column.aspect import ENOUGH, Line, scaling
 from mpm_verify.cases.column.records import MEASURES
 from mpm_verify.reports.components.examined import Section
 from mpm_verify.reports.components.page import Add
-from mpm_verify.reports.components.show import Table
+from mpm_verify.reports.components.table import Table
 from mpm_verify.reports.figures.aspect import run_out
 from mpm_verify.reports.sentences import column as words
 from mpm_verify.reports.words import DASH
