@@ -19,12 +19,14 @@ from matplotlib.figure import Figure
 from mpm_verify.cases.harness.build import Asked, build
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.cases.mms.run import Run
-from mpm_verify.reports.components import run_cards
+from mpm_verify.reports.components import page, run_cards
 from mpm_verify.reports.components.badges import Badge, shortened
-from mpm_verify.reports.components.latex import booktabs, text
-from mpm_verify.reports.components.page import adder, inside
+from mpm_verify.reports.components.latex import booktabs
+from mpm_verify.reports.components.latex import text as latex_of
+from mpm_verify.reports.components.page import TEMPLATES, adder, inside
 from mpm_verify.reports.components.references import cited, entries, named
 from mpm_verify.reports.components.table import SIZES, Table
+from mpm_verify.reports.components.take import beside
 from mpm_verify.reports.figures import drawn, style
 from mpm_verify.reports.frames import read
 from mpm_verify.reports.indexed import UNREADABLE
@@ -102,7 +104,7 @@ def test_a_table_as_csv_is_the_table() -> None:
     ],
 )
 def test_cells_in_latex(cell: str, latex: str) -> None:
-    assert text(cell) == latex
+    assert latex_of(cell) == latex
 
 
 def test_a_table_in_latex() -> None:
@@ -174,6 +176,23 @@ def test_a_picture_of_an_error_is_bright_where_the_error_is() -> None:
     image = np.asarray(Image.open(io.BytesIO(b64decode(data.partition(",")[2]))).convert("L"), float)
     upper_right, others = image[: len(image) // 2 - 1, len(image) // 2 + 1 :], image[len(image) // 2 + 1 :]
     assert upper_right.min() > 180 > 60 > others.max()
+
+
+def test_a_page_that_is_too_large_links_to_its_files(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Those of figures, which are beside it; those of tables stay inside."""
+    for file in TEMPLATES.iterdir():
+        (tmp_path / file.name).write_bytes(file.read_bytes())
+    (tmp_path / "own.html.j2").write_text('{% from "parts.html.j2" import takes %}<!--contents-->{{ takes(files) }}')
+    monkeypatch.setattr(page, "TEMPLATES", tmp_path)
+    (tmp_path / "figures").mkdir()
+    (tmp_path / "figures" / "one.svg").write_text("<svg/>")
+    files = [beside(tmp_path / "figures" / "one.svg"), wide(2).files[0]]
+    small = page.whole("own.html.j2", "Files", files=files)
+    monkeypatch.setattr(page, "LARGE", 100)
+    large = page.whole("own.html.j2", "Files", files=files)
+    assert [text.count('href="figures/one.svg"') for text in (small, large)] == [0, 1]
+    assert [text.count("data:image/svg+xml;base64") for text in (small, large)] == [1, 0]
+    assert [text.count("data:text/csv") for text in (small, large)] == [1, 1]
 
 
 # ---- cards of runs
@@ -266,9 +285,9 @@ def test_an_index_of_studies(verify: Call, tmp_path: Path) -> None:
     assert (told["one"]["runs"], told["deep/two"]["runs"]) == ("17 of 17", "12 of 15")
     assert (told["one"]["page"], told["deep/two"]["page"]) == ("one/report.html", "")
     assert [one["date"] for one in found] == sorted((one["date"] for one in found), reverse=True)
-    page = (tmp_path / "results" / "index.html").read_text()
-    assert page.count('href="one/report.html"') == 1
-    assert "CPDI converges at order 2.0" in page
+    text = (tmp_path / "results" / "index.html").read_text()
+    assert text.count('href="one/report.html"') == 1
+    assert "CPDI converges at order 2.0" in text
 
 
 def broken(folder: Path) -> None:
@@ -320,15 +339,15 @@ def test_a_page_of_two_studies(verify: Call, tmp_path: Path) -> None:
     assert order["before"] == pytest.approx(2.0, abs=0.05)
     assert order["before"] - order["after"] > 0.3
     assert out.splitlines()[-1] == "page: changes.html"
-    page = re.sub(r"\s+", " ", re.sub("<[^>]+>", " ", (tmp_path / "changes.html").read_text()))
+    text = re.sub(r"\s+", " ", re.sub("<[^>]+>", " ", (tmp_path / "changes.html").read_text()))
     for said in (
         "DIFFERENT",
         "1 verdicts and checks differ",
         "1 observed orders differ",
         "24 errors and values differ",
     ):
-        assert said in page
-    assert f"{1.01**128:.6g} times" in page
+        assert said in text
+    assert f"{1.01**128:.6g} times" in text
     assert alike[0] == 0
     assert "ALIKE" in (tmp_path / "same.html").read_text()
 

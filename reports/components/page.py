@@ -18,6 +18,7 @@ TEMPLATES = Path(__file__).absolute().parent.parent / "templates"
 HERE = "<!--contents-->"  # in a template: what is before it stands above the contents
 Add = Callable[[str, Figure, str], "Image"]
 ALL = ("svg", "pdf", "png")
+LARGE = 8_000_000  # characters of a page
 COLOURS = {  # of figures, by the variable of report.css that they follow in the dark
     style.INK: "ink", style.GREY: "soft", style.LIGHT: "grid", "#ffffff": "paper", "#f4f1ee": "strip",
     "#e8d5a3": "sand",
@@ -49,17 +50,23 @@ class Image:
     files: tuple[File, ...] = ()
 
 
-def template(name: str) -> Template:
-    """Template of this package; a name that is not defined is an error."""
+def template(name: str, light: bool = False) -> Template:
+    """Template of this package; a name that is not defined is an error. A `light` page links to files beside it."""
     environment = Environment(loader=FileSystemLoader(TEMPLATES), undefined=StrictUndefined, autoescape=True)
     environment.trim_blocks = environment.lstrip_blocks = True
-    environment.globals["detected"] = quoted()
+    environment.globals["detected"], environment.globals["light"] = quoted(), light
     return environment.get_template(name)
 
 
 def whole(name: str, title: str, **values: Any) -> str:
-    """Page from a template of its content: within the frame of all pages, with a table of contents."""
-    top, _, rest = template(name).render(title=title, **values).partition(HERE)
+    """Page from a template of its content; one that would be too large links to the files of its figures."""
+    text = framed(name, title, light=False, **values)
+    return text if len(text) < LARGE else framed(name, title, light=True, **values)
+
+
+def framed(name: str, title: str, light: bool, **values: Any) -> str:
+    """Page within the frame of all pages, with a table of contents."""
+    top, _, rest = template(name, light).render(title=title, **values).partition(HERE)
     found = re.findall(r'<h2 id="([^"]+)">(.*?)</h2>', rest, re.DOTALL)
     contents = [(key, Markup(heading)) for key, heading in found]
     return template("page.html.j2").render(title=title, top=Markup(top), rest=Markup(rest), contents=contents)

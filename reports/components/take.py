@@ -11,11 +11,12 @@ MOST = 400_000  # bytes of a file; a larger one is a link to the file beside the
 
 @dataclass(frozen=True)
 class File:
-    """File to take: its name, what it is called, and the link to it."""
+    """File to take: its name, what it is called, the link to it, and that to the same file beside the page."""
 
     name: str
     kind: str
     link: str
+    beside: str = ""
 
 
 def encoded(name: str, kind: str, content: bytes) -> File:
@@ -25,7 +26,5 @@ def encoded(name: str, kind: str, content: bytes) -> File:
 
 def beside(path: Path) -> File:
     """File of a figure: inside the page, or where it is large the file beside it."""
-    kind, content = path.suffix[1:].upper(), path.read_bytes()
-    if len(content) > MOST:
-        return File(path.name, kind, f"{path.parent.name}/{path.name}")
-    return encoded(path.name, kind, content)
+    kind, content, link = path.suffix[1:].upper(), path.read_bytes(), f"{path.parent.name}/{path.name}"
+    return File(path.name, kind, link if len(content) > MOST else encoded(path.name, kind, content).link, link)
