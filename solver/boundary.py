@@ -101,7 +101,7 @@ def box(grid: Grid, kind: Kind | tuple[Kind, Kind, Kind, Kind]) -> Walls:
     for name in kinds:
         if name not in get_args(Kind):
             raise ValueError(f"no wall {name!r}; choose from {', '.join(get_args(Kind))}")
-    held = np.zeros(grid.nodes.shape, dtype=bool)
+    held = np.zeros((len(grid.mass), 2), dtype=bool)
     for side, name in enumerate(kinds):
         axis, there = side // 2, behind(grid, side)
         held[there, axis] |= name != "free"
@@ -111,9 +111,11 @@ def box(grid: Grid, kind: Kind | tuple[Kind, Kind, Kind, Kind]) -> Walls:
 
 def behind(grid: Grid, side: int) -> NDArray[np.bool_]:
     """Nodes (n,) on a side of the domain and behind it; sides are left, right, bottom, top."""
-    x, slack = grid.nodes[:, side // 2], 1e-9 * grid.dx
-    on: NDArray[np.bool_] = (x >= grid.upper[side // 2] - slack) if side % 2 else (x <= grid.lower[side // 2] + slack)
-    return on
+    axis, slack = side // 2, 1e-9 * grid.dx
+    x = grid.origin[axis] + grid.dx * np.arange((grid.nx, grid.ny)[axis])
+    on = (x >= grid.upper[axis] - slack) if side % 2 else (x <= grid.lower[axis] + slack)
+    found: NDArray[np.bool_] = np.tile(on, grid.nx) if axis else np.repeat(on, grid.ny)
+    return found
 
 
 @kernel(nothing(F1, F2, F2, flag[:, ::1], F2, F2, flag, f8, f8, i8), parallel=True)

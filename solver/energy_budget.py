@@ -143,6 +143,7 @@ class Budget(Observer):
     after: Floats = field(default_factory=lambda: np.zeros((0, 2)))
     undamped: Floats = field(default_factory=lambda: np.zeros((0, 2)))
     v: Floats = field(default_factory=lambda: np.zeros((0, 2)))
+    bounds: tuple[int, int] = (0, 0)  # of the nodes that the particles can touch
 
     def before_forces(self, model: Model) -> None:
         """Add what lies between two steps, with forces that are not damped yet."""
@@ -150,26 +151,34 @@ class Budget(Observer):
         if not len(self.after):
             self.after, self.undamped = np.zeros((len(g.mass), 2)), np.zeros((len(g.mass), 2))
             self.sums[HALF_STEP] += 0.5 * model.dt * float((g.force * lumped(g, model.cutoff)).sum())
-        dt = model.dt if model.steps else 0.0  # nothing lies between the start and the first step
-        between_steps(g.mass, g.momentum_force, self.after, self.undamped, self.gravity, dt, model.cutoff, self.sums)
+        dt, nodes = model.dt if model.steps else 0.0, model.slabs.nodes  # nothing lies before the first step
+        if self.bounds != (nodes.start, nodes.stop):  # what the particles have left is at rest
+            kept, before = self.after[nodes].copy(), slice(*self.bounds)
+            self.after[before], self.after[nodes] = 0.0, kept
+            self.bounds = nodes.start, nodes.stop
+        between_steps(
+            g.mass[nodes], g.momentum_force[nodes], self.after[nodes], self.undamped[nodes], self.gravity, dt,
+            model.cutoff, self.sums,
+        )  # fmt: skip
 
     def after_motion(self, model: Model) -> None:
         """Add what the step does on the grid."""
-        g = model.grid
+        g, nodes = model.grid, model.slabs.nodes
         in_step(
-            g.mass, g.momentum_force, g.velocity_acceleration, self.undamped, self.after, model.walls.held,
-            0.0 if model.scheme.transfer.filters_walls else 1.0, self.gravity, model.dt,
+            g.mass[nodes], g.momentum_force[nodes], g.velocity_acceleration[nodes], self.undamped[nodes],
+            self.after[nodes], model.walls.held[nodes], 0.0 if model.scheme.transfer.filters_walls else 1.0,
+            self.gravity, model.dt,
             model.cutoff, self.sums,
         )  # fmt: skip
         self.v = model.particles.v.copy()
 
     def after_particles(self, model: Model) -> None:
         """Add what a filter does to the velocities, and take off what the particles took of the step."""
-        g, p = model.grid, model.particles
+        g, p, nodes = model.grid, model.particles, model.slabs.nodes
         if model.scheme.transfer.filters_walls:
             in_filter(
-                g.mass, g.velocity_acceleration, self.undamped, self.after, self.gravity, model.dt, model.cutoff,
-                self.sums,
+                g.mass[nodes], g.velocity_acceleration[nodes], self.undamped[nodes], self.after[nodes], self.gravity,
+                model.dt, model.cutoff, self.sums,
             )  # fmt: skip
         self.sums[TRANSFER] -= kicked(p.m, self.v, p.v)
 

@@ -168,7 +168,7 @@ def frictional(grid: Grid, sides: Sides) -> Walls:
     ValueError
         For another kind, or a coefficient below zero.
     """
-    normal, mu = np.zeros(grid.nodes.shape), np.zeros(grid.nodes.shape)
+    normal, mu = np.zeros((len(grid.mass), 2)), np.zeros((len(grid.mass), 2))
     kinds: list[Kind] = []
     for side, given in enumerate(sides):
         if isinstance(given, str):

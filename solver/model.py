@@ -135,6 +135,7 @@ class Model(Context):
         if self.pooling:
             self.pooling.start(self.material)
         self.material.start(self.particles)
+        self.slabs.whole = self.surface is not None
         self.slabs.sort(self.grid, self.particles, self.basis.on_grid(self.particles))
         self.scheme.transfer.start(self)
 

@@ -104,9 +104,8 @@ def particles_to_grid(model: Model) -> None:
     for attempt in range(8):
         p2g(
             model.basis.fill, model.basis.support, model.basis.domain_size, s.start, s.slab_columns,
-            p.x, p.v, p.F, p.sigma_smoothed if p.sigma_smoothed.size else p.sigma, p.m, p.V0, p.b, p.domain.ravel(),
-            g.origin, 1.0 / g.dx,
-            g.nx, g.ny, g.mass, g.momentum_force, s.strayed,
+            s.first, s.last, p.x, p.v, p.F, p.sigma_smoothed if p.sigma_smoothed.size else p.sigma, p.m, p.V0, p.b,
+            p.domain.ravel(), g.origin, 1.0 / g.dx, g.nx, g.ny, g.mass, g.momentum_force, s.strayed,
         )  # fmt: skip
         if (s.strayed < 0).all():
             model.scheme.transfer.give(model, g.momentum_force)
@@ -138,7 +137,7 @@ def update_stress(model: Model, x: Floats) -> None:
 
 def equation_of_motion(model: Model) -> None:
     """Write velocities and accelerations at the nodes, and what the transfer makes of them."""
-    g, w = model.grid, model.walls
+    g, w, nodes = model.grid, model.walls, model.slabs.nodes
     w.move(g, model.time, model.dt)
     if model.surface:
         model.surface.act(model)
@@ -147,17 +146,9 @@ def equation_of_motion(model: Model) -> None:
     if model.damping:
         model.damped += w.damp(model.damping.apply, g, model.dt, model.cutoff)
     solve(
-        g.mass,
-        g.momentum_force,
-        g.velocity_acceleration,
-        w.held,
-        w.value,
-        w.rate,
-        w.stops,
-        model.dt,
-        model.cutoff,
-        g.ny,
-    )
+        g.mass[nodes], g.momentum_force[nodes], g.velocity_acceleration[nodes], w.held[nodes], w.value[nodes],
+        w.rate[nodes], w.stops, model.dt, model.cutoff, g.ny,
+    )  # fmt: skip
     model.tell("after_motion")
     model.scheme.transfer.filter(model, g.velocity_acceleration)
     model.scheme.transfer.take(model)

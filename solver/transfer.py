@@ -71,13 +71,17 @@ def p2g_slab(
     return -1
 
 
-@kernel(nothing(Fill, i8, i8, I1, i8, F2, F2, F3, F2, F1, F1, F2, F1, F1, f8, i8, i8, F1, F2, I1), parallel=True)
+@kernel(
+    nothing(Fill, i8, i8, I1, i8, i8, i8, F2, F2, F3, F2, F1, F1, F2, F1, F1, f8, i8, i8, F1, F2, I1), parallel=True
+)
 def p2g(
     fill,
     K,
     W,
     start,
     slab_columns,
+    first,
+    last,
     x,
     v,
     F,
@@ -96,12 +100,12 @@ def p2g(
 ):
     """Sum mass (n,), momentum and force (n,4) of all particles at the nodes; `domain` is flat, W numbers a particle.
 
-    `start` (S+1,) bounds the particles of each slab. `strayed` (S,) is -1, or the first particle of a block that
-    reaches out of its slab's box; the sums are then incomplete and not to be used.
+    `start` (S+1,) bounds the particles of each slab, `first` and `last` the nodes that they touch. `strayed` (S,) is
+    -1, or the first particle of a block that reaches out of its slab's box; the sums are then not to be used.
     """
     slabs = start.shape[0] - 1
-    mass[:] = 0.0
-    momentum_force[:] = 0.0
+    mass[first:last] = 0.0
+    momentum_force[first:last] = 0.0
     guard = (slab_columns - 1) // 2
     for colour in range(2):
         for pair in prange((slabs - colour + 1) // 2):

@@ -38,8 +38,8 @@ Patch = pytest.MonkeyPatch
 Plant = Callable[[Patch], None]
 K = 16  # support nodes of CPDI
 NAMES = (
-    "fill", "K", "W", "start", "slab_columns", "x", "v", "F", "sigma", "m", "V0", "b", "domain", "origin", "inv_dx",
-    "nx", "ny", "mass", "momentum_force", "strayed",
+    "fill", "K", "W", "start", "slab_columns", "first", "last", "x", "v", "F", "sigma", "m", "V0", "b", "domain",
+    "origin", "inv_dx", "nx", "ny", "mass", "momentum_force", "strayed",
 )  # fmt: skip
 BACK = (
     "fill", "K", "W", "x", "v", "F", "domain", "origin", "inv_dx", "nx", "ny", "velocity_acceleration", "dt", "half",

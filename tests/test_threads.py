@@ -16,6 +16,7 @@ from mpm_verify.cases.mms.execute import setup
 from mpm_verify.cases.mms.run import Run
 from mpm_verify.solver._jit import use_threads
 from mpm_verify.solver.boundary import box
+from mpm_verify.solver.energy_budget import Budget
 from mpm_verify.solver.failure import RunFailed
 from mpm_verify.solver.layout import rectangle
 from mpm_verify.solver.material.neo_hookean import NeoHookean
@@ -71,6 +72,41 @@ def test_order_of_presentation(name: str, monkeypatch: pytest.MonkeyPatch) -> No
         a, b = plain.in_initial_order(array)[order], shuffled.in_initial_order(array)
         np.testing.assert_allclose(b, a, atol=1e-10 * np.abs(a).max(initial=1.0), rtol=0)
     assert np.abs(plain.F - np.eye(2)).max() > 0.05
+
+
+@pytest.mark.parametrize("name", ["mpm", "cpdi", "bspline3", "tlmpm"])
+def test_nodes_that_no_particle_touches(name: str) -> None:
+    """A fast body takes its columns of nodes along, also where it is put elsewhere: all nodes give the same bits.
+
+    Arrays of the nodes that it does not touch hold zeros.
+    """
+    some, every = channel(name), channel(name)
+    every.slabs.whole = True
+    every.slabs.bound(every.grid)
+    budgets = [Budget(np.array([0.0, -1.0])) for _ in range(2)]
+    for m, budget in zip((some, every), budgets, strict=True):
+        m.watch(budget)
+        fly(m, 20)
+        for shift in (40.0, -20.0, -20.0):
+            m.particles.x[:, 0] += shift
+            for _ in range(5):
+                advance(m, still)
+            if shift > 0:
+                assert alone(m, budget) == (m is some)
+    assert alone(some, budgets[0])
+    for array in ARRAYS:
+        np.testing.assert_array_equal(getattr(some.particles, array), getattr(every.particles, array))
+    np.testing.assert_array_equal(some.grid.mass, every.grid.mass)
+    np.testing.assert_array_equal(budgets[0].sums, budgets[1].sums)
+    assert (budgets[0].sums != 0).sum() > 5
+
+
+def alone(m: Model, budget: Budget) -> bool:
+    """Whether the nodes that particles can touch are some of all, and whatever is not zero is there."""
+    g, inside = m.grid, np.zeros(len(m.grid.mass), bool)
+    inside[m.slabs.nodes] = True
+    arrays = (g.mass, g.momentum_force, g.velocity_acceleration, budget.after)
+    return 0.1 < inside.mean() < 0.6 and all(a[inside].any() and not a[~inside].any() for a in arrays)
 
 
 @pytest.mark.parametrize("stress", ["usl", "musl", "usf"])
