@@ -163,6 +163,7 @@ SMALL = {
     ],
     "column": ["--cells", "2", "--aspect", "2", "--channel", "4", "--duration", "0.01", "--ppc", "1,4"],
     "element": ["linear_elastic", "--test", "isotropic,biaxial", "--steps", "2"],
+    "bench": ["--method", "mpm", "--cells", "4,6", "--ppc", "1", "--pairs", "3"],
     "wave_bar": ["--cells", "4,8", "--ppc", "1"],
     "objectivity": ["--cells", "4", "--ppc", "1"],
 }
@@ -246,7 +247,7 @@ def test_two_columns_of_one_name_are_an_error() -> None:
         joined({"digest": "a"}, {"damping": 0.1}, {"damping": 3.0})
 
 
-@pytest.mark.parametrize("case", ["mms", "box", "column", "element", "objectivity", "wave_bar"])
+@pytest.mark.parametrize("case", ["mms", "bench", "box", "column", "element", "objectivity", "wave_bar"])
 def test_every_case_has_a_table_of_runs(case: str, tmp_path: Path) -> None:
     """No field of a run has the name of what is measured of it."""
     from mpm_verify.cases.harness.study import ResultRecord, Study

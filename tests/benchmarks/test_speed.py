@@ -1,7 +1,7 @@
 """Speed, as ratios within one run: `make bench`. Nothing here asserts a time; what is asserted is that results agree.
 
 Every comparison alternates its two sides, so that a drift of the machine's speed hits both; the median of the pairs'
-ratios is what docs/results.md quotes. 128 x 128 cells, 4 particles a cell; body force and errors left out but where
+ratios is what docs/speed.md quotes. 128 x 128 cells, 4 particles a cell; body force and errors left out but where
 named.
 """
 
@@ -9,9 +9,11 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from pathlib import Path
 from statistics import median
 
 import numpy as np
+import plain
 import pytest
 import yardstick
 
@@ -94,6 +96,24 @@ def test_against_yardstick(benchmark, method: str) -> None:
     assert np.allclose(mine.particles.in_initial_order("x"), theirs.particles.x, rtol=0, atol=1e-13)
     assert np.allclose(mine.particles.in_initial_order("F"), theirs.particles.F, rtol=0, atol=1e-10)
     report(benchmark, f"{method}: speed over the hand-fused kernel", ratio)
+
+
+@pytest.mark.skipif(plain.COMPILER is None, reason="needs a C++ compiler")
+@pytest.mark.parametrize("method", ["mpm", "cpdi"])
+def test_against_plain_cpp(benchmark, method: str, tmp_path: Path) -> None:
+    """Speed on one thread over that of plain C++, -O3 -march=native, which must give the same particles."""
+    use_threads(1)
+    mine, theirs = start(method)[0], start(method)[0]
+    step = plain.stepped(plain.built(tmp_path), theirs)
+
+    def steps(call: Callable[[], object]) -> None:
+        for _ in range(STEPS):
+            call()
+
+    ratio, _ = paired(lambda: steps(lambda: advance(mine, unloaded)), lambda: steps(step), PAIRS // 3)
+    assert np.allclose(mine.particles.in_initial_order("x"), theirs.particles.x, rtol=0, atol=1e-13)
+    assert np.allclose(mine.particles.in_initial_order("F"), theirs.particles.F, rtol=0, atol=1e-10)
+    report(benchmark, f"{method}: speed over plain C++", ratio)
 
 
 @pytest.mark.parametrize("method", METHODS)
