@@ -6,7 +6,7 @@ import pandas as pd
 
 from mpm_verify.reports.components.examined import Section
 from mpm_verify.reports.components.page import adder
-from mpm_verify.reports.components.show import Table
+from mpm_verify.reports.components.table import Table
 from mpm_verify.reports.figures.bench import bars
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.pages import _plain
