@@ -1,13 +1,14 @@
 """Volume strain that stress holds in compression, its inverse and its energy: what pooling moves between particles.
 
-Two kinds: of a constant bulk modulus, and of moduli that are one power of the mean stress s in the plane, as those of
-UBCSAND with ne = me. Compression is positive here; in tension it is negative.
+Three kinds: of a constant bulk modulus, and of moduli that are one power of the mean stress s in the plane, or two, as
+those of UBCSAND with ne = me or another. Compression is positive here; in tension it is negative.
 """
 
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.polynomial.legendre import leggauss
 
 from mpm_verify.solver._jit import F1, F2, Function, f8, function_type, kernel, nothing
 from mpm_verify.solver.state import Floats
@@ -122,3 +123,70 @@ def power_stored(constants, xx, yy, zz, xy):
 def by_power(stiff: float, power: float, least: float) -> Compression:
     """Compression of a modulus ds/d(volume) = stiff max(s, least)^power, 0 <= power <= 1."""
     return Compression(np.array([stiff, power, least]), power_volume, power_scale, power_stored)
+
+
+POINTS = 16  # of Gauss-Legendre in ln s: to 1e-9 or better up to 100 kPa, 1e-14 where powers are 0.5 apart
+CLOSE = 1e-14  # of ln s
+
+
+@kernel(inline=True)
+def slope_of(constants, s):
+    """Modulus of two powers at s."""
+    return constants[0] * s ** constants[1] + constants[2] * s ** constants[3]
+
+
+@kernel(inline=True)
+def integral(constants, s, power):
+    """Integral of s^power ds / modulus from `least` to s, in ln s."""
+    least = constants[4]
+    half = 0.5 * np.log(s / least)
+    total = 0.0
+    for k in range(POINTS):
+        at = least * np.exp(half * (1.0 + constants[5 + k]))
+        total += constants[5 + POINTS + k] * at ** (1.0 + power) / slope_of(constants, at)
+    return half * total
+
+
+@kernel(VOLUME)
+def sum_volume(constants, xx, yy, zz):
+    """Integral of ds / modulus from no stress on; below `least` the modulus is that of `least`."""
+    least, s = constants[4], -0.5 * (xx + yy)
+    first = slope_of(constants, least)
+    return least / first + integral(constants, s, 0.0) if s > least else s / first
+
+
+@kernel(f8(F1, f8))
+def sum_stress(constants, strain):
+    """Inverse of sum_volume: Newton's steps for ln s over ln strain, which is concave, from below."""
+    least = constants[4]
+    first = slope_of(constants, least)
+    s = strain * first
+    if not s > least:
+        return s
+    for _ in range(60):
+        volume = least / first + integral(constants, s, 0.0)
+        step = np.log(strain / volume) * volume * slope_of(constants, s) / s
+        s *= np.exp(step)
+        if abs(step) < CLOSE:
+            break
+    return s
+
+
+@kernel(SCALE)
+def sum_scale(constants, old, new):
+    """Ratio of the mean stresses."""
+    return sum_stress(constants, new) / sum_stress(constants, old)
+
+
+@kernel(STORED)
+def sum_stored(constants, xx, yy, zz, xy):
+    """Integral of s over the strain of sum_volume."""
+    least, s = constants[4], -0.5 * (xx + yy)
+    first = slope_of(constants, least)
+    return 0.5 * least * least / first + integral(constants, s, 1.0) if s > least else 0.5 * s * s / first
+
+
+def by_two_powers(bulk: float, of_bulk: float, shear: float, of_shear: float, least: float) -> Compression:
+    """Compression of a modulus bulk s^of_bulk + shear s^of_shear, s at least `least`, powers from 0 to 1."""
+    constants = np.array([bulk, of_bulk, shear, of_shear, least, *np.concatenate(leggauss(POINTS))])
+    return Compression(constants, sum_volume, sum_scale, sum_stored)

@@ -111,6 +111,11 @@ def work(particles: Particles) -> float:
     return 0.5 * float((particles.V0 * particles.work.sum(axis=1)).sum())
 
 
+def given(model: Model) -> float:
+    """Work of the stress on what pooling takes off crowded volumes: no motion strains them, and no force does it."""
+    return model.pooling.crowding.given if model.pooling else 0.0
+
+
 @kernel(f8(F1, F2, F2))
 def kicked(m, before, v):
     """Sum of m |v - before|^2 / 2 over particles, (P,2)."""
@@ -192,7 +197,7 @@ class Budget(Observer):
             convection, half_step: energies per thickness.
         """
         p, sums = model.particles, self.sums
-        done, transfer = work(p), float(sums[TRANSFER] + sums[LATE])
+        done, transfer = work(p) - given(model), float(sums[TRANSFER] + sums[LATE])
         if model.scheme.transfer.flip_fraction != 1.0 or p.affine_velocity.size:
             transfer = float(sums[FORCES] + sums[WALLS] + sums[LATE]) - (kinetic(p) - self.before)
         return {

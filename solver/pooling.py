@@ -16,6 +16,9 @@ Every APART steps the cells are those that are half a cell further on both axes,
 that is open as a whole stays open where others carry it, and who is alone stays alone: a tenth of the sand at rest.
 Between two such steps a wave crosses some cells at usual Courant numbers, so that the grid has answered. More often,
 void strain spreads faster than sand can follow: every other step the sand of `verify box` stands 1.6 % higher.
+In these steps, and half-way between them in the cells of the grid, compressed particles take a fraction MIXED of the
+mean stress for as much of their own. Else what they differ by without being open grows as w does: single ones carry
+twelve times the mean of the lowest rows. Then what is crowded is relieved, see solver/crowding.py.
 
 New stresses are sums of old ones with weights that add up to 1 at most, so they stay in any strength that is convex
 and holds no stress at all, with cohesion too; and elastic energy, which is convex, can only fall. With moduli that
@@ -30,12 +33,13 @@ import numpy as np
 from mpm_verify.solver._jit import F1, F2, F3, I1, f8, flag, function_type, i8, kernel, nothing
 from mpm_verify.solver.compression import SCALE, STORED, VOLUME, Compression
 from mpm_verify.solver.context import Context
+from mpm_verify.solver.crowding import Crowding
 from mpm_verify.solver.material_model import Material
 from mpm_verify.solver.rate_material import RateMaterial
 from mpm_verify.solver.state import Floats
 
 COUNT, ALL, OPEN, D, C, VOID, PULLED, PRESSED, SUMS = 0, 1, 2, 3, 4, 5, 6, 10, 14  # of a cell; two of stress, four long
-APART = 16  # steps
+APART, MIXED = 16, 0.05  # steps; fraction of the stress: half of what particles differ by is gone in 110 steps
 FLAGS = flag[::1]
 
 
@@ -90,18 +94,20 @@ def gather(volume, constants, cell, V0, sigma, history, column, w, sums):
         i8,
         F1,
         F2,
+        f8,
         FLAGS,
     )
 )
-def settle(volume, scale, stored, constants, cell, V0, F_old, sigma, F, history, column, w, sums, renewed):
+def settle(volume, scale, stored, constants, cell, V0, F_old, sigma, F, history, column, w, sums, mixed, renewed):
     """Write stress, void strain, F and F_old of particles in cells that are open and compressed; the energy taken.
 
-    `renewed` (P,) is set where a particle has another stress than a multiple of its own, or none any more.
+    Compressed ones take the fraction `mixed` of the mean, where the cell is compressed as a whole. `renewed` (P,) is
+    set where a particle that was open has a stress, or one that had some has none any more.
     """
     taken = 0.0
     for p in range(cell.shape[0]):
         k = cell[p]
-        if k < 0 or sums[k, COUNT] < 2.0 or not (sums[k, D] > 0.0 and sums[k, C] > 0.0):
+        if k < 0 or sums[k, COUNT] < 2.0 or not (sums[k, C] > 0.0 and (sums[k, D] > 0.0 or mixed > 0.0)):
             continue
         opens = sums[k, D] > sums[k, C]
         less, most = (sums[k, C], sums[k, D]) if opens else (sums[k, D], sums[k, C])
@@ -112,9 +118,14 @@ def settle(volume, scale, stored, constants, cell, V0, F_old, sigma, F, history,
         void = history[p, column] if column >= 0 else 0.0
         strain = void - w[p]
         if opens == (w[p] > 0.0):
-            part = kept * (opened if opens else 1.0 - opened)
+            part = kept * (opened if opens else (1.0 - opened) * (1.0 - mixed))
+            joins = 0.0 if opens else mixed * mean
             void *= part
-            new = part * strain
+            new = part * strain + joins * sums[k, C]
+            if joins > 0.0:
+                for a in range(4):
+                    sigma[p, a] = part * sigma[p, a] + joins * sums[k, PRESSED + a]
+                strain = volume(constants, sigma[p, 0], sigma[p, 1], sigma[p, 2])
             by = scale(constants, strain, new) if strain != 0.0 else 0.0
             for a in range(4):
                 sigma[p, a] *= by
@@ -149,9 +160,12 @@ class Pooling:
     ----------
     taken
         Elastic energy that it has taken so far, per thickness.
+    crowding
+        Relief of crowded particles, half-way between two steps around the nodes.
     """
 
     taken: float = 0.0
+    crowding: Crowding = field(default_factory=Crowding)
     compression: Compression | None = field(default=None, repr=False)
     sums: Floats = field(default_factory=lambda: np.zeros((0, SUMS)), repr=False)
 
@@ -168,16 +182,21 @@ class Pooling:
         p, grid, material, own = context.particles, context.grid, context.material, self.compression
         assert own is not None
         assert isinstance(material, RateMaterial)
+        apart, between = (context.steps % APART == APART // part - 1 for part in (1, 2))
+        if between:
+            self.crowding.relieve(context)
         if len(self.sums) != grid.nx * grid.ny:
             self.sums = np.zeros((grid.nx * grid.ny, SUMS))
         column = material.memory.index("void") if "void" in material.memory else -1
         cell, w, renewed = np.empty(len(p), np.int64), np.zeros(len(p)), np.zeros(len(p), np.bool_)
-        origin = grid.origin - (0.5 * grid.dx if context.steps % APART == APART - 1 else 0.0)
+        origin = grid.origin - 0.5 * grid.dx * apart
         cells_of(context.basis.on_grid(p), origin, 1.0 / grid.dx, grid.nx, grid.ny, cell)
         gather(own.volume, own.constants, cell, p.V0, p.sigma, p.history, column, w, self.sums)
         self.taken += settle(
             own.volume, own.scale, own.stored, own.constants, cell, p.V0, p.F_old, p.sigma, p.F, p.history, column, w,
-            self.sums, renewed,
+            self.sums, MIXED * (apart or between), renewed,
         )  # fmt: skip
         if renewed.any():
             material.renew(p, np.flatnonzero(renewed))
+        if apart or between:
+            material.mobilise(p)

@@ -49,7 +49,10 @@ class RateMaterial(Material):
         return np.zeros((len(sigma), len(self.memory)))
 
     def renew(self, particles: Particles, rows: Ints) -> None:
-        """Write the history of particles in `rows` that pooling gave another stress: nothing, unless it is of it."""
+        """Write the history of particles in `rows` that pooling opened or closed: nothing, unless stress decides it."""
+
+    def mobilise(self, particles: Particles) -> None:
+        """Write the history that the stress of particles has at least: nothing, unless it is of the stress."""
 
     def start(self, particles: Particles) -> None:
         """Write F at the start of the first step, history and work, unless they go on from an earlier run."""

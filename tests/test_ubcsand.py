@@ -506,3 +506,14 @@ def test_the_missing_parameter_is_documented() -> None:
     assert pytest.approx(1.1 * 10.7**-0.15, abs=1e-10) == LAW.Rf
     assert "Rf is not in that table" in (Ubcsand.__doc__ or "")
     assert LAW.wave_speed() == pytest.approx(56, abs=0.5)  # at 20 kPa, 2.7 times that of the Mohr-Coulomb sand
+
+
+def test_a_state_on_its_own_yield_surface_stays() -> None:
+    """Without strain nothing happens, to the last bit or not: where t passes eta_m s by rounding no slip is left."""
+    sand = Ubcsand()
+    sigma = -np.outer(np.linspace(0.2, 1.0, 400), [5e3, 8e3, 6e3, 1e3])
+    history, after = sand.initial(sigma), sigma.copy()
+    t, s = np.hypot((sigma[:, 0] - sigma[:, 1]) / 2, sigma[:, 3]), -(sigma[:, 0] + sigma[:, 1]) / 2
+    assert 0 < (t > history[:, 0] * s).mean() < 1  # some are beyond, by rounding
+    sand.respond(sand.constants(), after.ravel(), np.zeros(3 * len(sigma)), history.ravel())
+    np.testing.assert_allclose(after, sigma, rtol=1e-12)

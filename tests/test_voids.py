@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from mpm_verify.solver.plugins import create
+from mpm_verify.solver.voids import remembering
 
 LAWS = ["mohr_coulomb", "drucker_prager", "ubcsand"]
 START = np.array([-2e3, -2e3, -2e3, 0.0])
@@ -90,8 +91,32 @@ def test_a_lost_strain_is_not_hidden(name: str) -> None:
         assert not np.isfinite(sigma[-1]).all() or not np.isfinite(history[-1]).all()
 
 
+@pytest.mark.parametrize("name", ["mohr_coulomb:c=500", "ubcsand:c=500"])
+def test_soil_with_cohesion_parts_free_of_stress_too(name: str) -> None:
+    """Parted at a cut-off of zero it touches where it left; without memory at once, and it has grown by the opening."""
+    path = [(1e-3, 1e-3, 0.0)] * 50 + [(-1e-3, -1e-3, 0.0)] * 50  # on both axes: on one alone it is a crack
+    with_, without = (driven(create("mpm_verify.solver.material", f"{name},void={v}"), path) for v in (1, 0))
+    touches = [int(np.argmax(np.abs(sigma[50:, :2]).max(axis=1) > 1.0)) for sigma, _ in (with_, without)]
+    assert np.abs(with_[0][49, [0, 1, 3]]).max() == 0.0
+    assert touches[0] > 40
+    assert touches[1] == 0
+    assert abs(without[0][-1, 1]) > 5 * abs(with_[0][-1, 1]) > 0
+
+
+def test_who_remembers() -> None:
+    """Sand, and soil that parts at no stress; not what holds tension, nor what has no voids."""
+    for name, remembers in {
+        "mohr_coulomb": True, "mohr_coulomb:c=500": True, "mohr_coulomb:c=500,sigma_t=10": False, "ubcsand:c=500": True,
+        "drucker_prager": True, "drucker_prager:c=500": False,
+    }.items():  # fmt: skip
+        assert remembering(create("mpm_verify.solver.material", name)).void == remembers, name
+
+
 @pytest.mark.parametrize("name", LAWS)
-@pytest.mark.parametrize(("parameters", "says"), [("void=2", "must be 0 or 1"), ("void=1,c=100", "must have c = 0")])
+@pytest.mark.parametrize(
+    ("parameters", "says"), [("void=2", "must be 0 or 1"), ("void=1,c=100,sigma_t=10", "must have c = 0")]
+)
 def test_refusals(name: str, parameters: str, says: str) -> None:
+    parameters = parameters.replace(",sigma_t=10", "") if name == "drucker_prager" else parameters  # it has no cut-off
     with pytest.raises(ValueError, match=says):
         create("mpm_verify.solver.material", f"{name}:{parameters}")

@@ -19,7 +19,7 @@ import numpy as np
 
 from mpm_verify.cases.column.heap import at_wall, by_volume, connected, crowding, levelled, quantile, surface
 from mpm_verify.cases.column.run import AT_REST, ColumnRun
-from mpm_verify.solver.energy_budget import Budget, kinetic, residual
+from mpm_verify.solver.energy_budget import Budget, given, kinetic, residual
 from mpm_verify.solver.friction import FrictionalWalls
 from mpm_verify.solver.model import Model, Observer
 from mpm_verify.solver.state import Floats
@@ -97,21 +97,23 @@ class Measure(Observer):
         }
 
     def split(self, model: Model, work: float) -> dict[str, float]:
-        """Elastic and plastic part of the work of stress, and what pooling has taken of it.
+        """Elastic and plastic part of the work of stress, what pooling has taken of it, and what crowding was given.
 
         Linear elasticity stores an energy, and the rest is plastic. UBCSAND, whose moduli follow s, has none: there the
         material gives the plastic work, per volume as it is, and the rest is called elastic.
         """
         p, stored = model.particles, model.material.stored_energy
         pooled = model.pooling.taken if model.pooling else 0.0
+        more = {"pooled": pooled, "given": given(model)}
+        work += more["given"] - pooled
         if stored:
             elastic = float((p.V0 * p.J * stored(p.sigma)).sum())
-            return {"elastic": elastic, "plastic": work - elastic - pooled, "pooled": pooled}
+            return {"elastic": elastic, "plastic": work - elastic, **more}
         now = worked(model)
         volume = p.in_initial_order("V0") * p.in_initial_order("J")
         self.plastic += float((volume * (now - self.worked)).sum())
         self.worked = now
-        return {"elastic": work - self.plastic - pooled, "plastic": self.plastic, "pooled": pooled}
+        return {"elastic": work - self.plastic, "plastic": self.plastic, **more}
 
     def curves(self) -> dict[str, Floats]:
         """Columns of the rows, and profiles (T,strips)."""
@@ -179,15 +181,16 @@ def scaled(model: Model) -> dict[str, float]:
 
 
 def books(model: Model) -> dict[str, float]:
-    """Means over the body: volume ratio, plastic dilation, and `unbooked`, of ln J what no strain accounts for.
+    """Means over the body: volume ratio, plastic dilation, what crowding took, and `unbooked` of ln J.
 
-    ln J is elastic volume, plastic dilation and void strain; pooling moves them between particles and keeps the mean.
-    Without pooling `unbooked` is 0.
+    Unbooked is what no strain accounts for: ln J is elastic volume, plastic dilation and void strain; pooling moves it
+    between particles and keeps the mean. Without pooling `unbooked` is 0.
     """
     p, memory = model.particles, model.material.memory
     whole, J = float(p.V0.sum()), p.J
     dilated, void = (p.history[:, memory.index(name)] if name in memory else 0 * J for name in ("eps_v_p", "void"))
     found = {"volume": float((p.V0 * J).sum()) / whole, "dilated": float((p.V0 * dilated).sum()) / whole}
+    found["drifted"] = model.pooling.crowding.strain if model.pooling else 0.0
     if model.pooling is None or model.pooling.compression is None:
         return found | {"unbooked": 0.0}
     rest = np.log(J) - dilated - void + model.pooling.compression.held(p.sigma)

@@ -91,11 +91,11 @@ def respond(constants, sigma, de, history):
         if not (f <= 0.0 and t1 <= tension):
             xx, yy, xy = sigma[4 * b], sigma[4 * b + 1], sigma[4 * b + 3]
             s1, s2, s3 = returned(t1, t2, t3, f, ended if history[3 * b] >= gamma_cv else constants)
-            opens = constants[18] > 0.0 and s3 >= tension
-            history[3 * b] += (t1 - s1 - t3 + s3) / shear
-            history[3 * b + (2 if opens else 1)] += (t1 - s1 + t2 - s2 + t3 - s3) * constants[17]
             finite = 0.0 * (xx + yy + zz + xy)  # corners are finite whatever comes in: a state that is NaN stays so
             up, down, zz = unsorted(s1 + finite, s2 + finite, s3 + finite, up, down, zz)
+            opens = constants[18] > 0.0 and min(up, down) >= tension  # nothing is left in the plane
+            history[3 * b] += (t1 - s1 - t3 + s3) / shear
+            history[3 * b + (2 if opens else 1)] += (t1 - s1 + t2 - s2 + t3 - s3) * constants[17]
             xx, yy, xy = on_axes(up, down, xx, yy, xy, plane[3 * b + 2])
             sigma[4 * b] = xx
             sigma[4 * b + 1] = yy
@@ -127,7 +127,7 @@ class MohrCoulomb(RateMaterial, Elastic):
     sigma_t
         Tension cut-off in the unit of E, zero or more; far above the cohesion it has no effect.
     void
-        1 with void-strain memory (solver/voids.py), which needs c = 0.
+        1 with void-strain memory (solver/voids.py), which needs c = 0 or sigma_t = 0.
     gamma_cv
         Plastic shear gamma_p, above zero, from which on psi is 0; inf where dilation has no end.
 
@@ -162,7 +162,7 @@ class MohrCoulomb(RateMaterial, Elastic):
         RateMaterial.__post_init__(self)
         undilated(self)
         check_strength(self.phi, self.psi, self.c)
-        check_void(self.void, self.c)
+        check_void(self.void, self.c, self.sigma_t)
         if not 0 <= self.sigma_t < inf:
             raise ValueError(f"sigma_t = {self.sigma_t} must be zero or more, and finite")
         if not self.gamma_cv > 0:

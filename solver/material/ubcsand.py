@@ -189,7 +189,7 @@ class Ubcsand(RateMaterial):
     reversal
         1 with a new branch at each reversal, which needs the rate green_naghdi.
     void
-        1 with void-strain memory (solver/voids.py), which needs c = 0.
+        1 with void-strain memory (solver/voids.py), which needs c = 0 or sigma_t = 0.
 
     Raises
     ------
@@ -263,17 +263,22 @@ class Ubcsand(RateMaterial):
         return self.KGe * self.Pa * ratio**self.ne, self.KBe * self.Pa * ratio**self.me
 
     def compression(self) -> "Compression":
-        """Volume strain that stress holds. Raises ValueError unless both moduli follow the same power of s."""
-        from mpm_verify.solver.compression import by_power
+        """Volume strain that stress holds: of K + G/3, by s."""
+        from mpm_verify.solver.compression import by_power, by_two_powers
 
-        if self.ne != self.me:
-            raise ValueError(f"pooling must have ne = me, one power of s, not ne = {self.ne} and me = {self.me}")
-        stiff = (self.KBe + self.KGe / 3) * self.Pa ** (1 - self.me)
-        return by_power(stiff, self.me, self.s_min * self.Pa)
+        least, bulk, shear = self.s_min * self.Pa, self.KBe * self.Pa ** (1 - self.me), self.KGe / 3
+        if self.ne == self.me:
+            return by_power((self.KBe + shear) * self.Pa ** (1 - self.me), self.me, least)
+        return by_two_powers(bulk, self.me, shear * self.Pa ** (1 - self.ne), self.ne, least)
 
     def renew(self, particles: Particles, rows: Ints) -> None:
         """Write eta_m of particles in `rows` as their new stress mobilises it: what touches again loads as if new."""
         particles.history[rows, 0] = self.initial(particles.sigma[rows])[:, 0]
+
+    def mobilise(self, particles: Particles) -> None:
+        """Raise eta_m of particles to what their stress mobilises."""
+        eta = particles.history[:, 0]
+        np.maximum(eta, self.initial(particles.sigma)[:, 0], out=eta)
 
     def constants(self) -> Floats:
         """Constants (16,) in the order in which the kernel reads them."""
@@ -332,7 +337,7 @@ def check(sand: Ubcsand) -> None:
         raise ValueError(f"K/G must leave (K/G + 1/3) sin^2(phi_pt)/4 below 1, not {worst:.3g}: no step would end")
     if not (0 <= sand.c < inf and 0 <= sand.sigma_t < inf):
         raise ValueError(f"c = {sand.c} and sigma_t = {sand.sigma_t} must be zero or more")
-    check_void(sand.void, sand.c)
+    check_void(sand.void, sand.c, sand.sigma_t)
     if sand.reversal not in (0, 1):
         raise ValueError(f"reversal = {sand.reversal} must be 0 or 1")
     if sand.reversal and sand.rate != "green_naghdi":
