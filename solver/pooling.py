@@ -173,7 +173,8 @@ class Pooling:
         """Take the compression of the material. Raises ValueError for one that states none."""
         if material.compression is None:
             raise ValueError(
-                "pooling must have a material that opens without stress: mohr_coulomb, drucker_prager, ubcsand"
+                "pooling must have a material that opens without stress; choose mohr_coulomb, drucker_prager, ubcsand, "
+                "or --pooling no"
             )
         self.compression = material.compression()
 

@@ -17,7 +17,12 @@ from mpm_verify.solver._jit import kernel
 
 @kernel(inline=True)
 def close_void(b, de, void):
-    """Take from the strain increment of particle b what its void strain takes up; return the void strain left."""
+    """Take from the strain increment of particle b what its void strain takes up; return the void strain left.
+
+    What rounding left below zero is no void.
+    """
+    if void < 0.0:
+        return 0.0
     volume = de[3 * b] + de[3 * b + 1]
     total = void + volume
     contact = 0.0 if total >= 0.0 else total / volume  # fraction of the increment that comes after it; NaN goes on

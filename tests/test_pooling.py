@@ -351,3 +351,16 @@ def test_the_box_with_pooling_reaches_its_known_end() -> None:
     assert v["top"] == pytest.approx(1.0, abs=0.03)
     assert [v[f"weight_{k}"] for k in range(1, ROWS + 1)] == pytest.approx([1.0] * ROWS, abs=0.05)
     assert v["largest"] < 8
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("material", "dilates"), [("mohr_coulomb:c=200,psi=0", 0.03), ("ubcsand", 0.01)])
+def test_other_soils_rest_in_the_box(material: str, dilates: float) -> None:
+    """With cohesion it left the grid, as it did not remember what it had opened; without pooling it swells."""
+    v = execute(Run(material=material, duration=1.0))[0].values
+    assert v["free"] < 0.01
+    assert v["void"] < 1e-3
+    assert abs(v["dilated"]) < dilates
+    assert v["top"] == pytest.approx(1, abs=0.03)
+    assert v["largest"] < 8
+    assert 0.4 < v["K_low"] < 0.55

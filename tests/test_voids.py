@@ -84,6 +84,21 @@ def test_off_it_is_not_there(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", LAWS)
+def test_a_void_below_zero_is_none(name: str) -> None:
+    """Rounding at the apex of Drucker-Prager leaves -1e-72, and a strain of no volume made NaN of it."""
+    law = create("mpm_verify.solver.material", f"{name}:void=1")
+    for start, de in ((START, (1e-4, -2e-4, 1e-4)), (START, (1e-4, -1e-4, 1e-4)), (0 * START, (0.0, 0.0, 1e-19))):
+        ends = []
+        for void in (0.0, -1e-72):
+            sigma, history = start.copy(), law.initial(start[None])[0]
+            history[column(law, "void")] = void
+            law.respond(law.constants(), sigma, np.array(de), history)
+            ends.append(np.concatenate([sigma, history]))
+        np.testing.assert_array_equal(ends[1], ends[0])
+        assert np.isfinite(ends).all()
+
+
+@pytest.mark.parametrize("name", LAWS)
 def test_a_lost_strain_is_not_hidden(name: str) -> None:
     law = create("mpm_verify.solver.material", f"{name}:void=1")
     for bad in (np.nan, np.inf):

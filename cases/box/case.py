@@ -29,7 +29,7 @@ __all__ = ["QUICK", "Result", "Run"]
 FREE, WEIGHT, TOP, LARGEST, MOVING = 0.05, 0.05, 0.03, 8.0, 1e-4
 K, AROUND = 0.475, 0.075  # 0.40 to 0.55
 CARRIED = [f"V sigma_yy over the weight above, row {k}" for k in range(1, ROWS + 1)]
-SPOILT = frozenset(CARRIED[:LOW])  # by sides that carry weight; the rest fails as shipped too, K with one seed of three
+SPOILT = frozenset(CARRIED[:LOW])  # by sides that carry weight; without pooling the rest fails too, and K with one seed
 
 
 @dataclass(frozen=True)

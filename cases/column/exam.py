@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from mpm_verify.cases.column.aspect import Line, lines
-from mpm_verify.cases.column.checks import checks
+from mpm_verify.cases.column.checks import checks, energy
 from mpm_verify.cases.column.claims import CROWDED, claims
 from mpm_verify.cases.column.experiment import experiment
 from mpm_verify.cases.column.records import Claim, FinishedRun
@@ -17,6 +17,8 @@ from mpm_verify.cases.column.run import ColumnResult, ColumnStudy
 from mpm_verify.cases.harness.checks import Check, Examination, Remark
 from mpm_verify.cases.harness.store import Store, StoreError
 from mpm_verify.cases.harness.study import Arrays
+
+GIVEN = 0.06  # of the initial potential energy: with 9 particles per cell and more it is less
 
 
 class ColumnRemark(StrEnum):
@@ -27,6 +29,7 @@ class ColumnRemark(StrEnum):
     TO_DO = "column.to_do"
     CLAIMS = "column.claims"  # how many of the paper's sentences are reproduced
     CROWDED = "column.crowded"  # heaps too small for their material
+    GIVEN = "column.given"  # energy that pooling gives to crowded particles
     ALONE = "column.alone"  # numbers of the one run there is
     BANDS = "column.bands"  # what the experiment's bands are
     UNREAD = "column.unread"  # files of curves that cannot be read
@@ -97,6 +100,9 @@ def findings(
     crowded = [one for one in ran if one.values["crowding"] > CROWDED]
     if crowded:
         found.append(Remark(ColumnRemark.CROWDED, {"runs": len(crowded), "limit": CROWDED}))
+    given = [part for one in ran if (part := one.values.get("given", 0.0) / energy(one)) > GIVEN]
+    if given:
+        found.append(Remark(ColumnRemark.GIVEN, {"runs": len(given), "limit": GIVEN, "most": max(given)}))
     if len(ran) == 1:
         v = ran[0].values
         found.append(Remark(ColumnRemark.ALONE, {**ran[0].lengths, "lost": v["lost"]}))

@@ -129,7 +129,7 @@ def budget(one: FinishedRun) -> Figure:
     layers = {
         "potential": c["potential"], "kinetic": c["kinetic"], "elastic": c["elastic"], "plastic": c["plastic"],
         "damping": c["damping"], "walls": -c["walls"], "lost by the method": c["transfer"] + c["convection"],
-        "pooling": c.get("pooled", 0 * c["t"]),
+        "pooling": c.get("pooled", 0 * c["t"]) - c.get("given", 0.0),
     }  # fmt: skip
     with rc_context(style.RC):
         figure, axes = style.panel(SIZE, xlabel=TIME, ylabel="energy / initial potential energy")

@@ -88,13 +88,14 @@ def films(analysis: ColumnAnalysis, store: Store, add: Add, ran: Sequence[tuple[
 
 def books(analysis: ColumnAnalysis) -> Section:
     """Section on the volume of the heap at the end: what it is made of, and the space that it takes."""
-    head = ("run", "plastic dilation", "void strain", "det F", "unaccounted for", "crowding",
+    head = ("run", "plastic dilation", "void strain", "det F", "unaccounted for", "drifted", "crowding",
             "det F / crowding", "area below 99 %", "height falls")  # fmt: skip
     rows = []
     for one in analysis.ran:
         v = one.values
         unbooked = f"{abs(v['unbooked']):.1e}" if one.run.pooling else ""
-        parts = (f"{v['dilated']:.4f}", f"{v['void_strain']:.4f}", f"{v['volume']:.4f}", unbooked)
+        drifted = f"{v.get('drifted', 0.0):.3f}" if one.run.pooling else ""
+        parts = (f"{v['dilated']:.4f}", f"{v['void_strain']:.4f}", f"{v['volume']:.4f}", unbooked, drifted)
         space = (f"{v['crowding']:.3f}", f"{v['volume'] / v['crowding']:.3f}", f"{v['area']:.3f}")
         rows.append((words.label(analysis.study, one.run), *parts, *space, percent(v["creep"])))
     return Section("volume", "Volume of the heap", [words.BOOKS], tables=[Table("Means at the end", head, tuple(rows))])

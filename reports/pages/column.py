@@ -143,13 +143,13 @@ def energy(ran: Sequence[FinishedRun], labels: Sequence[str], add: Add) -> Secti
     ]  # fmt: skip
     rubs = any(one.values.get("friction") for one in ran)
     pools = any(one.run.pooling for one in ran)
-    columns = ("potential", "kinetic", "on the grid", "elastic", "plastic", *["pooling"] * pools, "damping", "walls",
-               *["slip on walls"] * rubs, "transfer", "convection", "residual")  # fmt: skip
+    columns = ("potential", "kinetic", "on the grid", "elastic", "plastic", *["pooling", "given"] * pools, "damping",
+               "walls", *["slip on walls"] * rubs, "transfer", "convection", "residual")  # fmt: skip
     rows = []
     for one, label in zip(ran, labels, strict=True):
         start, v = float(one.curves["potential"][0]), one.values
         parts = [v[name] / start for name in ("potential", "kinetic", "on_grid", "elastic", "plastic")]
-        parts += [*[v.get("pooled", 0.0) / start] * pools, v["damping"] / start]
+        parts += [v.get(name, 0.0) / start for name in ("pooled", "given") * pools] + [v["damping"] / start]
         parts += [-v["walls"] / start, *[v["friction"] / start] * rubs]
         parts += [v["transfer"] / start, v["convection"] / start]
         rows.append((label, *(f"{100 * part:.2f}" for part in parts), f"{v['unbalanced']:.1e}"))
@@ -161,7 +161,10 @@ def energy(ran: Sequence[FinishedRun], labels: Sequence[str], add: Add) -> Secti
         "particles. Each term is computed apart from the others; the residual is what their sum misses. Where the "
         "gradients of weights jump, as those of classical MPM do, convection is not small."
     )
-    text += " Pooling is elastic energy that it has taken from the particles of cells." * pools
+    text += (
+        " Pooling is elastic energy that it has taken from the particles of cells, given what it put into crowded "
+        "ones, by the work of their stress: crowding took it from the fall, and it is on the other side of the sum."
+    ) * pools
     text += " Slip on walls is the part of walls that friction takes, by velocities at the end of each step." * rubs
     return Section("energy", "Energy", [text], figures, [
         Table("Energies at the end, % of the initial potential energy; residual: largest at any time",

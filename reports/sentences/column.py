@@ -46,7 +46,8 @@ BOOKS = (
     "The logarithm of det F is plastic dilation, void strain and elastic strain, which is small; pooling moves void "
     "and compression between the particles of a cell, and keeps their sum. Crowding is the volume that particles keep "
     "over the space that they are in: with few particles nothing on the grid ties the two. Mean det F over crowding is "
-    "the area of the heap, that of the column 1."
+    "the area of the heap, that of the column 1. Drifted: the strain that pooling has taken from crowded particles so "
+    "far, that is by how much positions came closer than det F knew."
 )
 ASPECTS = (
     "Run-out is the distance by which the front, 99 % of the mass, comes beyond the column's free side, over its "
@@ -319,6 +320,11 @@ REMARKS: dict[str, Callable[[Mapping[str, Any]], str]] = {
     ColumnRemark.CROWDED: lambda n: (
         f"In the heap of {n['runs']:g} of them particles keep more than {n['limit']:g} times the volume of the space "
         "that they are in: such a heap is too small for its material."
+    ),
+    ColumnRemark.GIVEN: lambda n: (
+        f"With few particles positions drift from det F. In {n['runs']:g} of them pooling had to give more than "
+        f"{100 * n['limit']:g} % of the initial energy, up to {100 * n['most']:.0f} %, to hold particles to their "
+        "space: such a run shows that correction as much as the sand. Take more particles per cell."
     ),
     ColumnRemark.ALONE: lambda n: (
         f"The front comes to {n['front_99']:.3f} m by 99 % of the mass, to {n['front_999']:.3f} m by 99.9 %, and the "
