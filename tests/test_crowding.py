@@ -13,7 +13,7 @@ from mpm_verify.cases.column.measure import Measure
 from mpm_verify.cases.column.run import ColumnRun
 from mpm_verify.solver.basis.cpdi import Cpdi
 from mpm_verify.solver.boundary import box
-from mpm_verify.solver.crowding import RATE, SLACK, excess, smoothed, spaces
+from mpm_verify.solver.crowding import NOISE, RATE, SLACK, excess, slack, smoothed, spaces
 from mpm_verify.solver.layout import rectangle
 from mpm_verify.solver.model import no_load
 from mpm_verify.solver.plugins import MATERIALS, create
@@ -78,6 +78,20 @@ def test_what_is_crowded_is_strained_by_a_rate() -> None:
     np.testing.assert_allclose(p.sigma[:, :2], -pressure, rtol=1e-2)
     assert m.pooling.crowding.given == pytest.approx(0.5 * pressure * -change * 1.1 * p.V0.sum(), rel=2e-2)
     np.testing.assert_allclose(p.F.reshape(-1, 4), p.F_old, atol=0)
+
+
+def test_fewer_particles_are_given_more_slack() -> None:
+    """As the scatter of particles that lie by chance, 0.26 over the root of their number per cell, measured here."""
+    rng, found = np.random.default_rng(1), []
+    for ppc in (4, 9, 16):
+        m = body(ppc=ppc)
+        scatter = []
+        for _ in range(20):
+            m.particles.x[:] = rng.uniform(0, 1.2, m.particles.x.shape)
+            scatter.append(float((over(m)[3:-3, 3:-3] ** 2).mean()))
+        found.append(float(np.mean(scatter) * ppc) ** 0.5)
+        assert slack(m.grid, m.particles.V0) == pytest.approx(max(SLACK, NOISE / ppc**0.5))
+    np.testing.assert_allclose(found, 3 * NOISE, rtol=0.2)
 
 
 def test_voids_close_first_and_what_has_room_stays() -> None:

@@ -124,12 +124,12 @@ def energy(ran: Sequence[FinishedRun], labels: Labels, name: str) -> Figure:
 
 
 def budget(one: FinishedRun) -> Figure:
-    """Energy budget of one run, layer upon layer; together they are the initial potential energy."""
+    """Energy budget of one run, layer upon layer: together the initial potential energy, and what pooling has given."""
     c, start = one.curves, float(one.curves["potential"][0])
     layers = {
         "potential": c["potential"], "kinetic": c["kinetic"], "elastic": c["elastic"], "plastic": c["plastic"],
         "damping": c["damping"], "walls": -c["walls"], "lost by the method": c["transfer"] + c["convection"],
-        "pooling": c.get("pooled", 0 * c["t"]) - c.get("given", 0.0),
+        "pooling": c.get("pooled", 0 * c["t"]),
     }  # fmt: skip
     with rc_context(style.RC):
         figure, axes = style.panel(SIZE, xlabel=TIME, ylabel="energy / initial potential energy")
@@ -140,8 +140,8 @@ def budget(one: FinishedRun) -> Figure:
                 axes.fill_between(t, below, above, color=colour, alpha=0.75, linewidth=0, label=name)
                 shown.append(name)
             below = above
-        axes.plot(t, below, color=style.INK, linewidth=1.0)
-        axes.set(xlim=(0, t[-1]), ylim=(0, 1.05))
+        axes.plot(t, below - c.get("given", 0.0) / start, color=style.INK, linewidth=1.0)
+        axes.set(xlim=(0, t[-1]), ylim=(0, max(1.05, 1.02 * float(below.max()))))
         legend(figure, shown, columns=3)
     return figure
 

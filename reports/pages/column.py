@@ -130,7 +130,8 @@ def budget(ran: Sequence[FinishedRun], labels: Sequence[str], add: Add) -> Secti
     for number, key in {0: "first", len(ran) - 1: "last"}.items():
         label = labels[number]
         image = add(f"budget_{key}", draw.budget(ran[number]), f"Layers of the energy budget over time, {label}.")
-        figures.append((image, f"Run: {label}. The line on top stays at 1 as the budget closes."))
+        more = " What is above it was given by pooling." * ran[number].run.pooling
+        figures.append((image, f"Run: {label}. The line on top stays at 1 as the budget closes.{more}"))
     return Section("budget", "Where the energy goes", figures=figures)
 
 
