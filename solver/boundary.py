@@ -34,12 +34,15 @@ class Walls:
     stops
         Hand the reaction on to the particles: bodies that strike a wall are stopped by nothing else, and FLIP would
         let them keep a velocity with which they do not move.
+    filtered
+        Velocity that walls take from what a transfer filters, (n,2), in the last step; empty where it filters nothing.
     """
 
     held: NDArray[np.bool_]
     value: Floats
     rate: Floats
     stops: bool = field(default=False, kw_only=True)
+    filtered: Floats = field(default_factory=lambda: np.zeros((0, 2)), kw_only=True)
 
     def move(self, grid: Grid, t: float, dt: float) -> None:
         """Set the walls for the step from t to t + dt; these stand still."""

@@ -10,10 +10,12 @@ the force. The step between moves particles, strains them by the gradient of u, 
 None of these knows the energies of the particles, so that
     kinetic + potential + work + damping - walls + transfer + convection - half_step = constant, to round-off
 can fail: in kinetic energy, position and damping against the forces, not in the work of the stress, which convection is
-held against. With other transfers than FLIP what they blend is a loss too, known as the gain of the particles alone.
+held against. With other transfers than FLIP what they blend is a loss too, known as the gain of the particles alone:
+then kinetic energy and walls cancel in that sum, and are held by tests of their own.
 A transfer that filters velocities moves particles with others than u: those are u above but in walls, and transfer has
 dt/2 f . (filtered - u) too. Its filter leaves w at a node that a wall holds in each step, which no wall has met: there
-walls has the velocity that particles moved with last instead of w, and the rest is transfer.
+walls has the velocity that particles moved with last instead of w, and the rest is transfer. The impulse of walls is
+that of the equation of motion, by the fraction of FLIP, and what they take in the filter (`Walls.filtered`).
 The work of the stress is the mean of that of the stress at the start and at the end of a step.
 Transfer and convection are what the method loses, and no energy of the material. Sums are no matrix products: threads
 of BLAS wait for the next one at full speed, and take the core from another run.
@@ -47,11 +49,11 @@ def between_steps(mass, momentum_force, after, undamped, g, dt, cutoff, sums):
                 sums[HALF_STEP] += 0.5 * dt * mass[i] * g[a] * after[i, a]
 
 
-@kernel(nothing(F1, F2, F2, F2, F2, flag[:, ::1], f8, F1, f8, f8, F1))
-def in_step(mass, momentum_force, velocity_acceleration, undamped, after, held, kept, g, dt, cutoff, sums):
+@kernel(nothing(F1, F2, F2, F2, F2, flag[:, ::1], f8, f8, F1, f8, f8, F1))
+def in_step(mass, momentum_force, velocity_acceleration, undamped, after, held, flip, kept, g, dt, cutoff, sums):
     """Add up what the step does on the grid; write the kinetic energy after it to ON_GRID, and u to `after`.
 
-    `kept`: fraction of w in the velocity that a wall meets, 1 or 0, the rest is that of the last step.
+    `flip`: fraction of FLIP; `kept`: that of w in the velocity that a wall meets, 1 or 0, the rest is the last step's.
     """
     sums[ON_GRID] = 0.0
     for i in range(mass.shape[0]):
@@ -61,7 +63,8 @@ def in_step(mass, momentum_force, velocity_acceleration, undamped, after, held, 
                 change = dt * velocity_acceleration[i, 2 + a]
                 w = momentum_force[i, a] / mass[i]
                 mean = 0.5 * (w + u)
-                impulse = dt * (mass[i] * velocity_acceleration[i, 2 + a] - momentum_force[i, 2 + a])
+                taken = flip * change + (1.0 - flip) * (u - w)
+                impulse = mass[i] * taken - dt * momentum_force[i, 2 + a]
                 sums[ON_GRID] += 0.5 * mass[i] * u * u
                 sums[TRANSFER] += 0.5 * mass[i] * change * change
                 sums[FORCES] += dt * momentum_force[i, 2 + a] * mean
@@ -75,8 +78,8 @@ def in_step(mass, momentum_force, velocity_acceleration, undamped, after, held, 
             after[i, a] = velocity_acceleration[i, a]
 
 
-@kernel(nothing(F1, F2, F2, F2, F1, f8, f8, F1))
-def in_filter(mass, velocity_acceleration, undamped, after, g, dt, cutoff, sums):
+@kernel(nothing(F1, F2, F2, F2, F2, F1, f8, f8, F1))
+def in_filter(mass, velocity_acceleration, undamped, after, filtered, g, dt, cutoff, sums):
     """Add up what a filter does to the velocities behind `in_step`, which are in `after`; write those of now there."""
     sums[ON_GRID] = 0.0
     for i in range(mass.shape[0]):
@@ -88,7 +91,7 @@ def in_filter(mass, velocity_acceleration, undamped, after, g, dt, cutoff, sums)
                 sums[LATE] += 0.5 * dt * undamped[i, a] * more
                 sums[CONVECTION] += 0.5 * dt * (undamped[i, a] - mass[i] * g[a]) * more
                 sums[HALF_STEP] -= 0.5 * dt * mass[i] * g[a] * more
-                sums[IMPULSE + a] += mass[i] * more
+                sums[IMPULSE + a] -= mass[i] * filtered[i, a]
         for a in range(2):
             after[i, a] = velocity_acceleration[i, a]
 
@@ -112,7 +115,7 @@ def work(particles: Particles) -> float:
 
 
 def given(model: Model) -> float:
-    """Work of the stress on what pooling takes off crowded volumes: no motion strains them, and no force does it."""
+    """Work per thickness of the stress on what pooling takes off crowded volumes: no motion and no force does it."""
     return model.pooling.crowding.given if model.pooling else 0.0
 
 
@@ -168,22 +171,22 @@ class Budget(Observer):
 
     def after_motion(self, model: Model) -> None:
         """Add what the step does on the grid."""
-        g, nodes = model.grid, model.slabs.nodes
+        g, nodes, transfer = model.grid, model.slabs.nodes, model.scheme.transfer
         in_step(
             g.mass[nodes], g.momentum_force[nodes], g.velocity_acceleration[nodes], self.undamped[nodes],
-            self.after[nodes], model.walls.held[nodes], 0.0 if model.scheme.transfer.filters_walls else 1.0,
-            self.gravity, model.dt,
-            model.cutoff, self.sums,
+            self.after[nodes], model.walls.held[nodes], transfer.flip_fraction, float(not transfer.filters),
+            self.gravity, model.dt, model.cutoff, self.sums,
         )  # fmt: skip
         self.v = model.particles.v.copy()
 
     def after_particles(self, model: Model) -> None:
         """Add what a filter does to the velocities, and take off what the particles took of the step."""
         g, p, nodes = model.grid, model.particles, model.slabs.nodes
-        if model.scheme.transfer.filters_walls:
+        if model.scheme.transfer.filters:
+            taken = model.walls.filtered if len(model.walls.filtered) else np.zeros((len(g.mass), 2))
             in_filter(
-                g.mass[nodes], g.velocity_acceleration[nodes], self.undamped[nodes], self.after[nodes], self.gravity,
-                model.dt, model.cutoff, self.sums,
+                g.mass[nodes], g.velocity_acceleration[nodes], self.undamped[nodes], self.after[nodes], taken[nodes],
+                self.gravity, model.dt, model.cutoff, self.sums,
             )  # fmt: skip
         self.sums[TRANSFER] -= kicked(p.m, self.v, p.v)
 
@@ -193,8 +196,8 @@ class Budget(Observer):
         Returns
         -------
         dict
-            kinetic, on_grid, potential (zero where the particles have x = 0), work, damping, walls, transfer,
-            convection, half_step: energies per thickness.
+            kinetic, on_grid, potential (zero where the particles have x = 0), work of the motion (what pooling gives
+            is none), damping, walls, transfer, convection, half_step: energies per thickness.
         """
         p, sums = model.particles, self.sums
         done, transfer = work(p) - given(model), float(sums[TRANSFER] + sums[LATE])

@@ -77,7 +77,7 @@ def test_usage_is_2_and_one_line(verify: Call, tmp_path: Path, name: str) -> Non
 def test_what_runs_nothing_is_0_or_2(verify: Call, tmp_path: Path, name: str) -> None:
     """Folders that hold no study are input, and so is a solver that is not there."""
     said = verify(*asked(name))
-    if name in ("report", "diff", "check-force", "compare"):
+    if name in ("report", "diff", "check-force", "compare", "index"):
         assert "study" in one_line(said)
     else:
         assert said[0] == 0

@@ -20,10 +20,15 @@ class Transfer:
     Attributes
     ----------
     filters_walls
-        Whether what walls give is filtered too: then the momentum that they gave is not known.
+        Whether what walls give is filtered too: then the reaction of walls is not known when it is taken.
     """
 
     filters_walls: ClassVar[bool] = False
+
+    @property
+    def filters(self) -> bool:
+        """Whether the velocities that move the particles are others than those of the equation of motion."""
+        return type(self).filter is not Transfer.filter
 
     @property
     def flip_fraction(self) -> float:
@@ -46,7 +51,10 @@ class Transfer:
         """Add to the first two columns of `momentum` (n,4) what the particles' velocities do not tell."""
 
     def filter(self, context: Context, velocity_acceleration: Floats) -> None:
-        """Replace lumped velocities, the first columns (n,4), by those that move and strain the particles."""
+        """Replace lumped velocities, the first columns (n,4), by those that move and strain the particles.
+
+        What walls take from the velocities of nodes that they hold belongs in `context.walls.filtered` (n,2).
+        """
 
     def take(self, context: Context) -> None:
         """Take from the grid's new velocities what particles keep besides v."""

@@ -22,7 +22,7 @@ import numpy as np
 
 from mpm_verify.solver.context import Context
 from mpm_verify.solver.state import Floats
-from mpm_verify.solver.transfers._base import Transfer
+from mpm_verify.solver.transfers._base import Gradient, Transfer
 from mpm_verify.solver.transfers._passes import collect, lumped, spread
 
 HIGHEST = 100  # terms; each takes two passes over the particles
@@ -55,9 +55,14 @@ class Fmpm(Transfer):
         if not (1 <= self.order <= HIGHEST and float(self.order).is_integer()):
             raise ValueError(f"order = {self.order} of FMPM must be a whole number from 1 to {HIGHEST}")
 
+    def start(self, context: Context, L: Gradient | None = None) -> None:
+        """Make room for what walls take."""
+        context.walls.filtered = np.zeros(context.walls.held.shape)
+
     def filter(self, context: Context, velocity_acceleration: Floats) -> None:
-        """Replace v by w; at held nodes v is the wall's velocity."""
-        v, w = velocity_acceleration[:, :2].copy(), velocity_acceleration[:, :2]
+        """Replace v by w; at held nodes v is the wall's velocity, and w - A w of the last term is what walls take."""
+        v, w, walls = velocity_acceleration[:, :2].copy(), velocity_acceleration[:, :2], context.walls
         for _ in range(int(self.order) - 1):
             Aw = lumped(context, spread(context, collect(context, velocity_acceleration)[:, :2]))
-            w[:] = np.where(context.walls.held, v, v + w - Aw)
+            walls.filtered = np.where(walls.held, w - Aw, 0.0)
+            w[:] = np.where(walls.held, v, v + w - Aw)
