@@ -1,0 +1,80 @@
+"""Sentences of the ledger of the paper: what a claim comes to, by what parts and numbers, and under what readings."""
+
+from collections.abc import Mapping, Sequence
+
+from mpm_verify.reports.paper.records import Entry, Status
+from mpm_verify.reports.paper.registered import Change
+
+TITLE = "Moormann, Giridharan & Stolle 2022, claim by claim"
+ANSWERS: Mapping[bool | None, str] = {True: "yes", False: "no", None: "open"}
+MEANING = {
+    Status.HOLDS: "every part of it holds in our runs",
+    Status.IN_PART: "some parts of it hold",
+    Status.NO: "no part of it holds",
+    Status.OPEN: "cannot be tested here",
+    Status.NOT_RUN: "a Result that its rule reads is not stored",
+}
+MODES = {"full": "in full", "quick": "quick, on coarse meshes"}
+
+
+def lead(mode: str, entries: Sequence[Entry]) -> str:
+    """Counts of statuses, and what a status is about."""
+    each = [one.status for one in entries]
+    said = ", ".join(f"{each.count(status)} {status}" for status in Status if status in each)
+    return (f"{len(each)} claims, {MODES[mode]}: {said}. A status is about our runs under our readings, "
+            "never about the authors' code.")  # fmt: skip
+
+
+def told(entry: Entry) -> list[str]:
+    """Lines of a claim: status and parts, numbers, warning, other readings, reason, what would close it."""
+    found = [f"**{entry.status}**{of_parts(entry.parts)}"]
+    if entry.missing:
+        found[0] += f": {missing(entry)}"
+    if entry.numbers:
+        found.append("; ".join(f"{name} {number(value)}" for name, value in entry.numbers.items()))
+    if entry.crowded:
+        each = ", ".join(f"{number(value)} times with {name}" for name, value in entry.crowded.items())
+        found.append(
+            f"Warning: grains crowd, they fill more than the space that there is: {each}; those runs are weak."
+        )
+    if entry.under:
+        found.append(f"Under other readings: {'; '.join(under(entry))}.")
+    found += [text for text in (entry.claim.reason,) if text]
+    if entry.claim.closes:
+        found.append(f"Would be closed by: {entry.claim.closes}")
+    return found
+
+
+def missing(entry: Entry) -> str:
+    """Lack of a rule: Results, or runs that came to their end."""
+    lacks = "is not stored" if entry.status is Status.NOT_RUN else "has no runs that came to their end"
+    return f"the study {entry.missing} {lacks}"
+
+
+def of_parts(parts: Mapping[str, bool | None]) -> str:
+    """Parts with their answers, where there are some."""
+    return f" ({'; '.join(f'{name}: {ANSWERS[answer]}' for name, answer in parts.items())})" if parts else ""
+
+
+def under(entry: Entry) -> list[str]:
+    """Statuses under other readings; the parts too where they are others and the status is not."""
+    found = []
+    for one in entry.under:
+        other = one.parts != entry.parts and one.status == entry.status
+        found.append(f"{one.reading} {one.value}: {one.status}{of_parts(one.parts) if other else ''}")
+    return found
+
+
+def change(one: Change) -> str:
+    """Change in a line."""
+    return f"{one.claim}, {one.what}: registered {value_of(one.registered)}, found {value_of(one.found)}"
+
+
+def value_of(value: object) -> str:
+    """Value of a change: all digits of a number, as those that changed may be the last."""
+    return "nothing" if value is None else f"{value:.9g}" if isinstance(value, float) else str(value)
+
+
+def number(value: float) -> str:
+    """Number with four digits, as long as that is not too long."""
+    return f"{value:.4g}"

@@ -1,0 +1,38 @@
+"""Ledger of the paper on the terminal: a row a claim, what has changed, where the files are. Numbers are in those."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from rich.table import Table
+from rich.text import Text
+
+from mpm_verify.reports.paper.records import Entry, Status
+from mpm_verify.reports.paper.registered import Change
+from mpm_verify.reports.sentences import paper as words
+from mpm_verify.verify.terminal.table import Listened
+
+STYLES = {Status.HOLDS: "green", Status.IN_PART: "yellow", Status.NO: "red", Status.OPEN: "dim", Status.NOT_RUN: "dim"}
+NARROW = 120
+
+
+def show(mode: str, entries: Sequence[Entry], changes: Sequence[Change], known: bool, files: Sequence[Path]) -> None:
+    """Print the ledger."""
+    out = Listened(highlight=False, soft_wrap=False)
+    if not out.is_terminal:
+        out.width = max(out.width, NARROW)
+    table = Table(box=None, pad_edge=False, header_style="dim")
+    for name in ("claim", "where", "status", "part by part", "hangs on"):
+        table.add_column(name, overflow="fold")
+    for one in entries:
+        parts = words.missing(one) if one.missing else words.of_parts(one.parts).strip(" ()")
+        table.add_row(one.claim.id, one.claim.where, Text(str(one.status), STYLES[one.status]),
+                      Text(parts + "; crowded" * bool(one.crowded)), " ".join(one.hangs))  # fmt: skip
+    out.print(table)
+    out.print(f"\n{words.lead(mode, entries)}")
+    for change in changes:
+        out.print(Text(f"changed: {words.change(change)}", "red"))
+    if not changes:
+        out.print("Statuses and numbers are those that are registered." if known
+                  else "Nothing is registered of these; --register does.")  # fmt: skip
+    for path in files:
+        out.print(f"{path.suffix[1:]}: {path}", soft_wrap=True)
