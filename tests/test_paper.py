@@ -2,6 +2,8 @@
 
 import json
 import shutil
+import subprocess
+import sys
 from collections import Counter
 from dataclasses import replace
 from pathlib import Path
@@ -229,3 +231,56 @@ def test_runs_that_failed_answer_nothing(tmp_path: Path) -> None:
     assert {one.claim.id for one in each if one.status is Status.NO} == {"F5", "F8"}
     text = writing.markdown("quick", each, [])
     assert "open**: the study figure4 has no runs that came to their end" in text
+
+
+def test_exit_codes(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Any) -> None:
+    """3 where nothing is registered, 0 as registered whatever holds, 1 where a stored number is another."""
+    from mpm_verify.verify.commands.paper import told
+
+    monkeypatch.setattr(registered, "FOLDER", tmp_path / "rows")
+    shutil.copytree(folder / "rotation", tmp_path / "rotation")
+    wanted = chosen("rotation")
+    assert told(tmp_path, "quick", wanted, register=False, json_output=False) == 3
+    assert "Nothing is registered" in capsys.readouterr().out
+    assert told(tmp_path, "quick", wanted, register=True, json_output=False) == 0
+    assert "Of 3 claims that are registered, none changed." in capsys.readouterr().out
+    for path in (tmp_path / "rotation" / "runs").glob("*.json"):
+        data = json.loads(path.read_text())
+        data["errors"]["u"]["rms"] *= 1.5 if data["run"]["cells"] == 32 else 1.0
+        path.write_text(json.dumps(data))
+    assert told(tmp_path, "quick", wanted, register=False, json_output=True) == 1
+    changed = json.loads(capsys.readouterr().out)["changes"]
+    assert {(one["claim"], one["what"]) for one in changed} == {
+        ("F2", "status"), ("F2", "order of u"), ("F4", "status"), ("F4", "order of u"),
+    }  # fmt: skip
+    page = (tmp_path / "index.html").read_text()
+    assert "Changed against what is registered" in page
+
+
+def test_the_page(folder: Path, found: dict[str, Entry], tmp_path: Path) -> None:
+    """A card a claim, its warning, what it hangs on, and links only to pages that are there."""
+    from mpm_verify.reports.pages._paper import page
+
+    (tmp_path / "figure4").mkdir()
+    (tmp_path / "figure4" / "report.html").write_text("")
+    text = page(tmp_path, "quick", list(found.values()), []).read_text()
+    assert all(f'id="{name}"' in text for name in (*found, *(one.id for one in readings())))
+    assert text.count("<strong>Warning.</strong>") == sum(bool(one.crowded) for one in found.values()) > 2
+    assert '<a href="figure4/report.html">' in text
+    assert '<a href="figure5/report.html">' not in text
+    assert '<a href="#R5">R5</a>' in text
+
+
+@pytest.mark.slow
+def test_a_small_part_runs_and_is_as_registered(tmp_path: Path) -> None:
+    """The rows that ship are those of the installed solver; what is stored is not run again."""
+    from mpm_verify.solver.source_hash import TOP
+
+    command = [sys.executable, "-m", "mpm_verify", "paper", "--quick", "--only", "cell_crossing,rotation,ubcsand",
+               "--jobs", "1", "--out", str(tmp_path)]  # fmt: skip
+    first, again = (subprocess.run(command, capture_output=True, text=True, cwd=TOP, timeout=600) for _ in range(2))
+    assert first.returncode == 0, first.stdout + first.stderr
+    assert "cell_crossing, 2 to run, 0 stored" in first.stderr
+    assert "Of 5 claims that are registered, none changed." in first.stdout
+    assert "3 of 3, all stored: ubcsand, 0 to run, 12 stored" in again.stderr
+    assert again.stdout == first.stdout

@@ -62,9 +62,9 @@ def others(reading: Reading, rule: Any) -> Iterator[Under]:
         try:
             found: Answer = rule(at)
         except NotStoredError as gone:
-            yield Under(reading.id, str(value), gone.status, {})
+            yield Under(reading.id, reading.name, str(value), gone.status, {})
         else:
-            yield Under(reading.id, str(value), found.status, found.parts)
+            yield Under(reading.id, reading.name, str(value), found.status, found.parts)
 
 
 def counts(found: Sequence[Entry]) -> Mapping[Status, int]:

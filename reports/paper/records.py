@@ -107,9 +107,10 @@ class Chosen(Mapping[str, Any]):
 
 @dataclass(frozen=True)
 class Under:
-    """Status of a claim under another reading."""
+    """Status of a claim under another value of a reading, `name` in words."""
 
     reading: str
+    name: str
     value: str
     status: Status
     parts: Mapping[str, bool | None]

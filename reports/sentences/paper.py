@@ -33,10 +33,7 @@ def told(entry: Entry) -> list[str]:
     if entry.numbers:
         found.append("; ".join(f"{name} {number(value)}" for name, value in entry.numbers.items()))
     if entry.crowded:
-        each = ", ".join(f"{number(value)} times with {name}" for name, value in entry.crowded.items())
-        found.append(
-            f"Warning: grains crowd, they fill more than the space that there is: {each}; those runs are weak."
-        )
+        found.append(f"Warning: {crowded(entry)}")
     if entry.under:
         found.append(f"Under other readings: {'; '.join(under(entry))}.")
     found += [text for text in (entry.claim.reason,) if text]
@@ -51,6 +48,17 @@ def missing(entry: Entry) -> str:
     return f"the study {entry.missing} {lacks}"
 
 
+def crowded(entry: Entry) -> str:
+    """Warning of runs that are crowded."""
+    each = ", ".join(f"{number(value)} times with {name}" for name, value in entry.crowded.items())
+    return f"grains stand for more than the space that they fill, {each}: those runs are weak."
+
+
+def part(name: str) -> str:
+    """Heading of a part of the paper."""
+    return f"Figure {name}" if name.isdigit() else f"{name[0].upper()}{name[1:]}"
+
+
 def of_parts(parts: Mapping[str, bool | None]) -> str:
     """Parts with their answers, where there are some."""
     return f" ({'; '.join(f'{name}: {ANSWERS[answer]}' for name, answer in parts.items())})" if parts else ""
@@ -61,7 +69,7 @@ def under(entry: Entry) -> list[str]:
     found = []
     for one in entry.under:
         other = one.parts != entry.parts and one.status == entry.status
-        found.append(f"{one.reading} {one.value}: {one.status}{of_parts(one.parts) if other else ''}")
+        found.append(f"{one.reading}, {one.name}, {one.value}: {one.status}{of_parts(one.parts) if other else ''}")
     return found
 
 
@@ -78,3 +86,13 @@ def value_of(value: object) -> str:
 def number(value: float) -> str:
     """Number with four digits, as long as that is not too long."""
     return f"{value:.4g}"
+
+
+def registered(entries: Sequence[Entry], changes: Sequence[Change], known: set[str]) -> str:
+    """Line on what is registered: how many claims have changed, and how many have no row."""
+    ran = {one.claim.id for one in entries if one.status is not Status.NOT_RUN}
+    if not ran & known:
+        return "Nothing is registered of these; --register does."
+    changed = len({one.claim for one in changes})
+    said = f"Of {len(ran & known)} claims that are registered, {changed or 'none'} changed"
+    return f"{said}; {len(ran - known)} are not registered." if ran - known else f"{said}."

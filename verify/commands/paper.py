@@ -55,9 +55,11 @@ def told(folder: Path, mode: str, wanted: "list[PaperStudy]", register: bool, js
     import json
 
     from mpm_verify.reports.export import paper as writing
+    from mpm_verify.reports.pages._paper import page
     from mpm_verify.reports.paper import registered
     from mpm_verify.reports.paper.evidence import below
     from mpm_verify.reports.paper.ledger import ledger
+    from mpm_verify.reports.paper.records import Status
     from mpm_verify.reports.paper.studies import studies
     from mpm_verify.verify.terminal.output import printing
     from mpm_verify.verify.terminal.paper import show
@@ -67,13 +69,14 @@ def told(folder: Path, mode: str, wanted: "list[PaperStudy]", register: bool, js
         registered.register(entries, mode)
     rows = registered.registered(mode)
     changed = registered.changes(entries, rows, len(wanted) == len(studies()))
-    files = writing.write(folder, mode, entries, changed)
+    files = [*writing.write(folder, mode, entries, changed), page(folder, mode, entries, changed)]
     with printing():
         if json_output:
             typer.echo(json.dumps(writing.document(mode, entries, changed), indent=1, ensure_ascii=False))
         else:
-            show(mode, entries, changed, bool(rows), files)
-    return 1 if changed else 0 if rows else NOTHING
+            show(mode, entries, changed, set(rows), files)
+    ran = {one.claim.id for one in entries if one.status is not Status.NOT_RUN}
+    return 1 if changed else 0 if ran & rows.keys() else NOTHING
 
 
 def command(name: str, mode: str) -> str:

@@ -15,7 +15,9 @@ STYLES = {Status.HOLDS: "green", Status.IN_PART: "yellow", Status.NO: "red", Sta
 NARROW = 120
 
 
-def show(mode: str, entries: Sequence[Entry], changes: Sequence[Change], known: bool, files: Sequence[Path]) -> None:
+def show(
+    mode: str, entries: Sequence[Entry], changes: Sequence[Change], known: set[str], files: Sequence[Path]
+) -> None:
     """Print the ledger."""
     out = Listened(highlight=False, soft_wrap=False)
     if not out.is_terminal:
@@ -31,8 +33,6 @@ def show(mode: str, entries: Sequence[Entry], changes: Sequence[Change], known: 
     out.print(f"\n{words.lead(mode, entries)}")
     for change in changes:
         out.print(Text(f"changed: {words.change(change)}", "red"))
-    if not changes:
-        out.print("Statuses and numbers are those that are registered." if known
-                  else "Nothing is registered of these; --register does.")  # fmt: skip
+    out.print(words.registered(entries, changes, known))
     for path in files:
         out.print(f"{path.suffix[1:]}: {path}", soft_wrap=True)
