@@ -5,6 +5,7 @@ They are those of a world in which the ledger has claims of every status.
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -118,11 +119,16 @@ def failed(run: Any) -> Made:
     return replace(result, status="failed", failure=why, errors={}, values={}), {}
 
 
+@cache
+def built() -> dict[str, Study[Any]]:
+    """All studies of the quick mode."""
+    return {name: one.build(QUICK, f"verify paper --quick --only {name}") for name, one in studies().items()}
+
+
 def store(folder: Path, make: Callable[[Any], Made] = lambda run: MADE[run.case](run)) -> dict[str, Study[Any]]:
     """Store all studies of the quick mode below the folder."""
-    found = {}
-    for name, one in studies().items():
-        study = found[name] = one.build(QUICK, f"verify paper --quick --only {name}")
+    found = built()
+    for name, study in found.items():
         into = Store(folder / name, study.case)
         into.create(study)
         for run in study.runs:

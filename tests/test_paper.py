@@ -1,6 +1,7 @@
 """Ledger of the paper on made up Results: statuses by rules, readings, registered rows, and that nothing is typed."""
 
 import json
+import re
 import shutil
 import subprocess
 import sys
@@ -284,3 +285,47 @@ def test_a_small_part_runs_and_is_as_registered(tmp_path: Path) -> None:
     assert "Of 5 claims that are registered, none changed." in first.stdout
     assert "3 of 3, all stored: ubcsand, 0 to run, 12 stored" in again.stderr
     assert again.stdout == first.stdout
+
+
+def test_figures_are_as_wide_as_a_column_and_their_data_are_what_is_drawn(folder: Path, tmp_path: Path) -> None:
+    """A narrow figure and a wide one; their PDF has TrueType letters, and its page is so wide."""
+    import pandas as pd
+
+    from mpm_verify.reports.figures.paper import FIGURES, write
+    from mpm_verify.reports.frames import read
+
+    for number, width in ((4, 84.0), (6, 174.0)):
+        one = FIGURES[number - 1]
+        record = read(folder / one.study)
+        paths = write(one, record, tmp_path)
+        assert [path.name for path in paths] == [f"figure{number}.{kind}" for kind in ("pdf", "svg", "png", "csv")]
+        pdf = paths[0].read_bytes()
+        box = re.search(rb"/MediaBox \[ ?0 0 ([0-9.]+)", pdf)
+        assert box
+        assert float(box[1]) / 72 * 25.4 == pytest.approx(width, abs=0.1)
+        assert b"/Type3" not in pdf
+        assert b"/TrueType" in pdf or b"/CIDFontType2" in pdf
+        data = pd.read_csv(paths[3])
+        assert data["series"].nunique() == len(record.study.runs)
+    kinetic = data[data["series"] == "no damping"].iloc[:, -1].dropna()
+    assert kinetic.max() == pytest.approx(100 / 480, rel=1e-6)
+
+
+def test_a_figure_without_runs_that_ended_is_left_out(tmp_path: Path) -> None:
+    from mpm_verify.cases.harness.store import Store
+    from mpm_verify.reports.figures.paper import write_all
+
+    study = studies()["figure8"].build("quick", "verify paper")
+    into = Store(tmp_path / "figure8", "column")
+    into.create(study)
+    assert write_all(tmp_path, below(tmp_path)) == {}
+    for run in study.runs:
+        into.put(*fixtures_paper.failed(run))
+    assert write_all(tmp_path, below(tmp_path)) == {}
+
+
+def test_tables_are_the_parameters_that_runs_had(folder: Path, tmp_path: Path) -> None:
+    first, second = writing.tables(tmp_path, below(folder))
+    assert "\nphi,31.0\n" in first.read_text()
+    assert "\nheight,0.6335\n" in first.read_text()
+    assert second.read_text() == "parameter,value\nRf,0.77\n"

@@ -10,8 +10,9 @@ from typing import Any
 
 from mpm_verify.cases.harness.store import Store, make
 from mpm_verify.reports.export.document import finite
+from mpm_verify.reports.paper.evidence import Evidence
 from mpm_verify.reports.paper.ledger import counts, readings
-from mpm_verify.reports.paper.records import Entry
+from mpm_verify.reports.paper.records import Entry, NotStoredError
 from mpm_verify.reports.paper.registered import Change
 from mpm_verify.reports.sentences import paper as words
 
@@ -31,6 +32,25 @@ def write(folder: Path, mode: str, entries: Sequence[Entry], changes: Sequence[C
     for name, text in texts.items():
         Store.write(folder / name, text.encode())
     return [folder / name for name in texts]
+
+
+TABLES = {"table1": "figure3", "table2": "ubcsand"}  # of the paper, and the study whose parameters it has
+
+
+def tables(folder: Path, seen: Evidence) -> list[Path]:
+    """Write table1.csv and table2.csv, the parameters that runs had, as far as these are stored; their paths."""
+    paths = []
+    for name, study in TABLES.items():
+        try:
+            result = seen.one(study)
+        except NotStoredError:
+            continue
+        own = {key.removeprefix("material "): value for key, value in result.parameters.items()}
+        rows = {**({"width": result.run.width, "height": result.run.height} if name == "table1" else {}), **own}
+        text = "".join(f"{key},{value}\n" for key, value in {"parameter": "value", **rows}.items())
+        paths.append(folder / f"{name}.csv")
+        Store.write(paths[-1], text.encode())
+    return paths
 
 
 def document(mode: str, entries: Sequence[Entry], changes: Sequence[Change]) -> Mapping[str, Any]:

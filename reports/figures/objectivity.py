@@ -31,8 +31,9 @@ def stresses(exact: Curve, blocks: Mapping[str, Curve], wave: Curve | None = Non
             axes.set(xlabel="time [s]", xlim=(0, 2), ylim=(-1.15, 0.4), title=title)
             axes.axvline(1.0, color=style.GREY, linewidth=0.8)
             for k, name in enumerate(("xx", "yy", "xy")):
-                axes.plot(exact["t"], exact[name], linewidth=1.4, color=style.COLOURS[k])
+                axes.plot(exact["t"], exact[name], linewidth=1.4, color=style.COLOURS[k], label=f"{name}, closed form")
                 axes.plot(block["t"][::SPARSE], block[name][::SPARSE], linestyle="none", marker=style.MARKERS[k],
+                          label=f"{name}, run",
                           markersize=5, markerfacecolor="white", color=style.COLOURS[k])  # fmt: skip
         if wave:
             panels[0].plot(wave["t"], wave["yy"], color=style.INK, linewidth=0.9)

@@ -1,11 +1,13 @@
 """Page of the ledger of the paper: statuses at a glance, a card a claim with parts, numbers and readings, and these."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.reports.components.badges import Badge
-from mpm_verify.reports.components.page import whole
+from mpm_verify.reports.components.page import Image, inside, whole
+from mpm_verify.reports.components.take import beside
+from mpm_verify.reports.figures.paper import FIGURES, NARROW
 from mpm_verify.reports.paper.ledger import counts, readings
 from mpm_verify.reports.paper.records import Entry, Status
 from mpm_verify.reports.paper.registered import Change
@@ -16,8 +18,12 @@ LOOKS = {Status.HOLDS: "PASS", Status.IN_PART: "MET", Status.NO: "FAIL", Status.
          Status.NOT_RUN: "ERROR"}  # fmt: skip
 
 
-def page(folder: Path, mode: str, entries: Sequence[Entry], changes: Sequence[Change]) -> Path:
-    """Write index.html into the folder; its path. Raises StoreError."""
+def page(
+    folder: Path, mode: str, entries: Sequence[Entry], changes: Sequence[Change],
+    figures: Mapping[int, Sequence[Path]] | None = None,
+) -> Path:  # fmt: skip
+    """Write index.html into the folder; its path. `figures`: files by number. Raises StoreError."""
+    images = {f"{number}": image(number, paths) for number, paths in (figures or {}).items()}
     parts = dict.fromkeys(one.claim.part for one in entries)
     text = whole(
         "paper.html.j2",
@@ -26,7 +32,10 @@ def page(folder: Path, mode: str, entries: Sequence[Entry], changes: Sequence[Ch
         found=[Badge(LOOKS[status], str(count), str(status)) for status, count in counts(entries).items()],
         changes=[words.change(one) for one in changes],
         entries=entries,
-        groups=[(words.part(name), [one for one in entries if one.claim.part == name]) for name in parts],
+        groups=[(name, words.part(name), [one for one in entries if one.claim.part == name]) for name in parts],
+        images=images,
+        captions=words.CAPTIONS,
+        narrow=[f"{one.number}" for one in FIGURES if one.width == NARROW],
         looks=LOOKS,
         meaning=words.MEANING,
         answers=words.ANSWERS,
@@ -39,3 +48,12 @@ def page(folder: Path, mode: str, entries: Sequence[Entry], changes: Sequence[Ch
     )
     Store.write(folder / NAME, text.encode())
     return folder / NAME
+
+
+def image(number: int, paths: Sequence[Path]) -> Image:
+    """Figure from its files, the SVG among them."""
+    name, alt = f"figure{number}", words.CAPTIONS[f"{number}"]
+    svg = next(path for path in paths if path.suffix == ".svg").read_text(encoding="utf-8")
+    return Image(
+        name, inside(svg, name, alt), alt, files=tuple(beside(path) for path in paths if path.suffix != ".png")
+    )

@@ -43,7 +43,8 @@ def registered(mode: str) -> dict[str, Row]:
 
 def row(entry: Entry) -> Row:
     """Row of an entry as it is registered."""
-    under = {f"{one.reading} {one.value}": str(one.status) for one in entry.under}
+    tried = (one for one in entry.under if one.status is not Status.NOT_RUN)
+    under = {f"{one.reading} {one.value}": str(one.status) for one in tried}
     numbers = {} if entry.claim.timed else {name: float(f"{value:.9g}") for name, value in entry.numbers.items()}
     return {"status": str(entry.status), "under": under, "numbers": numbers}
 
@@ -72,10 +73,9 @@ def changed(entry: Entry, known: Row, complete: bool) -> Iterator[Change]:
     now, name = row(entry), entry.claim.id
     if now["status"] != known["status"]:
         yield Change(name, "status", known["status"], now["status"])
-    not_run = str(Status.NOT_RUN)
-    for reading in dict.fromkeys([*known["under"], *now["under"]]):
-        before, after = known["under"].get(reading, not_run), now["under"].get(reading, not_run)
-        if before != after and (complete or after != not_run):
+    for reading, before in known["under"].items():
+        after = now["under"].get(reading, str(Status.NOT_RUN))
+        if before != after and (complete or reading in now["under"]):
             yield Change(name, f"status under {reading}", before, after)
     for what in dict.fromkeys([*known["numbers"], *now["numbers"]]):
         one, other = known["numbers"].get(what), now["numbers"].get(what)

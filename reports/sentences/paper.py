@@ -14,6 +14,16 @@ MEANING = {
     Status.OPEN: "cannot be tested here",
     Status.NOT_RUN: "a Result that its rule reads is not stored",
 }
+CAPTIONS = {
+    "1": "Error of u against cell size over one period, in rms and in the norm as printed.",
+    "2": "Mean stress of the turning block against time: lines are the closed form, marks the CPDI run.",
+    "3": "The column before it is released, and its foot with cells, particles and domains.",
+    "4": "Front and toe against time for each number of particles per cell.",
+    "5": "Front and toe against time for each damping.",
+    "6": "Potential and kinetic energy against time for each damping.",
+    "7": "Front and toe against time for each smoothing.",
+    "8": "Front and toe against time for both materials.",
+}
 MODES = {"full": "in full", "quick": "quick, on coarse meshes"}
 
 
@@ -33,7 +43,7 @@ def told(entry: Entry) -> list[str]:
     if entry.numbers:
         found.append("; ".join(f"{name} {number(value)}" for name, value in entry.numbers.items()))
     if entry.crowded:
-        found.append(f"Warning: {crowded(entry)}")
+        found.append(f"Warning. {crowded(entry)}")
     if entry.under:
         found.append(f"Under other readings: {'; '.join(under(entry))}.")
     found += [text for text in (entry.claim.reason,) if text]
@@ -51,7 +61,7 @@ def missing(entry: Entry) -> str:
 def crowded(entry: Entry) -> str:
     """Warning of runs that are crowded."""
     each = ", ".join(f"{number(value)} times with {name}" for name, value in entry.crowded.items())
-    return f"grains stand for more than the space that they fill, {each}: those runs are weak."
+    return f"Grains stand for more than the space that they fill, {each}: those runs are weak."
 
 
 def part(name: str) -> str:

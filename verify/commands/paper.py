@@ -55,6 +55,7 @@ def told(folder: Path, mode: str, wanted: "list[PaperStudy]", register: bool, js
     import json
 
     from mpm_verify.reports.export import paper as writing
+    from mpm_verify.reports.figures.paper import write_all
     from mpm_verify.reports.pages._paper import page
     from mpm_verify.reports.paper import registered
     from mpm_verify.reports.paper.evidence import below
@@ -64,12 +65,14 @@ def told(folder: Path, mode: str, wanted: "list[PaperStudy]", register: bool, js
     from mpm_verify.verify.terminal.output import printing
     from mpm_verify.verify.terminal.paper import show
 
-    entries = ledger(below(folder))
+    seen = below(folder)
+    entries, figures = ledger(seen), write_all(folder, seen)
     if register:
         registered.register(entries, mode)
     rows = registered.registered(mode)
     changed = registered.changes(entries, rows, len(wanted) == len(studies()))
-    files = [*writing.write(folder, mode, entries, changed), page(folder, mode, entries, changed)]
+    files = [*writing.write(folder, mode, entries, changed), *writing.tables(folder, seen),
+             *(paths[0] for paths in figures.values()), page(folder, mode, entries, changed, figures)]  # fmt: skip
     with printing():
         if json_output:
             typer.echo(json.dumps(writing.document(mode, entries, changed), indent=1, ensure_ascii=False))

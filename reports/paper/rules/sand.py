@@ -4,13 +4,13 @@ from collections.abc import Mapping
 from typing import Any
 
 from mpm_verify.cases.column.records import FinishedRun
+from mpm_verify.cases.element.exam import ElementRemark
 from mpm_verify.cases.harness.checks import Check
 from mpm_verify.cases.judging.records import Outcome
 from mpm_verify.reports.paper.evidence import Evidence
 from mpm_verify.reports.paper.records import Answer, NotFinishedError
 
 At = Mapping[str, Any]
-PRINTED = frozenset({"hfac1", "hfac2", "hfac3", "hfac4", "hfac5", "hfac6"})  # of which Table 2 says what to calibrate
 CLOSE = 0.05  # of the front
 
 
@@ -22,7 +22,9 @@ def u1(seen: Evidence, at: At) -> Answer:
         raise NotFinishedError("ubcsand")
     passed = sum(check.outcome is Outcome.PASS for check in checks)
     ratio = next(float(value) for name, value in parameters.items() if name.split()[-1] == "Rf")
-    return Answer({"element tests": passed == len(checks), "table is complete": False},
+    origins = [one.origins for one in seen.record("ubcsand").analysis.more.examinations.values()]
+    printed = all(one.get("Rf") != ElementRemark.CORRELATION for one in origins)
+    return Answer({"element tests": passed == len(checks), "table is complete": printed},
                   {"checks": len(checks), "pass": passed, "failure ratio taken": ratio})  # fmt: skip
 
 
