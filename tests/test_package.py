@@ -52,6 +52,8 @@ def test_the_wheel_holds_files_under_one_name(wheel: Path) -> None:
         "mms/export/templates/drivers/driver.c.in",
         "cases/column/studies/figure5.toml",
         "cases/mms/digits/digits.csv",
+        "reports/paper/claims.toml",
+        "reports/paper/registered/quick.json",
     ):
         assert f"mpm_verify/{file}" in names
 
