@@ -31,7 +31,7 @@ class Entry:
 def entries(folder: Path) -> list[Entry]:
     """Studies in a folder and those below it, the last written first. Raises ValueError where there is none."""
     if not folder.is_dir():
-        raise ValueError(f"{folder} is not a folder; give one with studies below it, such as results")
+        raise ValueError(f"{folder} is not a folder; give one with a study below it, such as results")
     found = [entry(folder, path.parent) for path in folder.rglob("study.json")]
     if not found:
         raise ValueError(f"{folder} has no study below it; give the folder that holds studies, such as results")

@@ -34,8 +34,8 @@ def commands() -> dict[str, set[str]]:
 
 
 def study_commands() -> list[str]:
-    """Names of the commands that run a study."""
-    return [name for name, options in commands().items() if "--dry-run" in options]
+    """Names of the commands that run one study."""
+    return [name for name, options in commands().items() if {"--dry-run", "--junit"} <= options]
 
 
 def asked(name: str) -> list[str]:

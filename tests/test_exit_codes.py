@@ -73,7 +73,7 @@ def test_usage_is_2_and_one_line(verify: Call, tmp_path: Path, name: str) -> Non
     assert content(tmp_path) == []
 
 
-@pytest.mark.parametrize("name", [name for name in commands() if name not in (*STUDIES, "power")])
+@pytest.mark.parametrize("name", [name for name in commands() if name not in (*STUDIES, "power", "paper")])
 def test_what_runs_nothing_is_0_or_2(verify: Call, tmp_path: Path, name: str) -> None:
     """Folders that hold no study are input, and so is a solver that is not there."""
     said = verify(*asked(name))
