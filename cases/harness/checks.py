@@ -9,7 +9,7 @@ from mpm_verify.cases.judging.records import Outcome, worst
 from mpm_verify.solver.failure import Failure
 from mpm_verify.solver.state import Floats
 
-Unjudged = Literal["", "few_grids", "not_usual", "not_at_rest"]  # why nothing can be held; words: sentences/unjudged
+Unjudged = Literal["", "few_grids", "not_usual", "not_at_rest", "one_thread"]  # why nothing can be held
 Way = Literal["relative", "absolute", "at_least", "at_most"]
 Curves = dict[str, dict[str, Floats]]
 

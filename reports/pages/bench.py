@@ -20,7 +20,7 @@ def page(record: Record, vtk: bool = False) -> Path:
     Raises StoreError.
     """
     rows = bench.rows(record)
-    first = [Section("timed", "What is timed", said.statement())]
+    first = [Section("timed", "What is timed", said.statement(record.study.runs))]
     if rows:
         folder = record.store.folder
         for name in ("figures", "tables"):

@@ -16,9 +16,11 @@ NOTES = (
 CAPTION = "Time of a step over that of the other method, with quartiles."
 
 
-def statement() -> list[str]:
-    """Statement of what is timed, which is the docstring of the case."""
-    return paragraphs(getdoc(case) or "")
+def statement(runs: Sequence[case.Run]) -> list[str]:
+    """Statement of what is timed, which is the docstring of the case, and the sizes that these runs have."""
+    sizes = dict.fromkeys((run.cells, run.ppc) for run in runs)
+    here = ", ".join(f"{cells} cells along a side with {ppc} per cell" for cells, ppc in sizes)
+    return [*paragraphs(getdoc(case) or ""), f"Here: {here}."]
 
 
 def measured_on(rows: Sequence[Mapping[str, Any]]) -> str:
