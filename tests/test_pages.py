@@ -153,6 +153,24 @@ def test_points_stand_where_they_are_drawn(tmp_path: Path) -> None:
     np.testing.assert_allclose(first, at, atol=0.02)
 
 
+@pytest.mark.parametrize("gap", [float("nan"), 0.0])
+def test_a_point_without_a_position_takes_its_run_along(tmp_path: Path, gap: float) -> None:
+    """One that is not a number, or zero on a logarithmic axis: those behind it are still of their own runs."""
+    figure = lines_of([(0.01, 1e-4), (0.1, gap), (1.0, 1.0)], [(0.1, 1e-3)])
+    told = {Run(cells=2 + k).digest: f"run {k}" for k in range(3)}
+    first, last = adder(tmp_path, told=told)("drawn", figure, "Errors.").points
+    assert (first.text, last.text) == ("run 0", "run 2")
+    assert first.left < last.left < 100
+    assert 0 < last.top < first.top < 100
+
+
+def test_runs_of_a_line_are_as_many_as_its_points() -> None:
+    figure = lines_of([(0.1, 1.0), (1.0, 1.0)], [(0.1, 1.0)])
+    drawn.of_runs(figure.axes[0].lines[:1], [Run()])
+    with pytest.raises(ValueError, match="longer"):
+        list(drawn.points(figure))
+
+
 def test_a_run_without_a_card_has_no_point(tmp_path: Path) -> None:
     assert adder(tmp_path)("drawn", lines_of([(0.1, 1.0)], [(0.1, 1.0)]), "Errors.").points == ()
 

@@ -41,8 +41,20 @@ def named(figure: Figure) -> dict[str, list[Line2D]]:
 
 def finite(line: Line2D) -> Any:
     """Points (N,2) of a line that are numbers."""
-    x, y = (np.asarray(part, float) for part in line.get_data())
-    return np.column_stack([x, y])[np.isfinite(x) & np.isfinite(y)]
+    every = data(line)
+    return every[np.isfinite(every).all(axis=1)]
+
+
+def data(line: Line2D) -> Any:
+    """Points (N,2) of a line, those that are not numbers too."""
+    return np.column_stack([np.asarray(part, float) for part in line.get_data()])
+
+
+def seen(line: Line2D) -> Any:
+    """Mask (N) of the points of a line that have a position: numbers, and above zero along a logarithmic axis."""
+    every, axes = data(line), line.axes
+    logarithmic = [axes.get_xscale() == "log", axes.get_yscale() == "log"] if axes else [False, False]
+    return (np.isfinite(every) & ((every > 0) | ~np.array(logarithmic))).all(axis=1)
 
 
 def tagged(figure: Figure) -> tuple[str, ...]:
@@ -58,9 +70,11 @@ def points(figure: Figure) -> Iterator[Point]:
     """Points of lines whose runs are known, of a figure that has been laid out."""
     width, height = figure.bbox.size
     for number, lines in enumerate(named(figure).values()):
-        for line in lines:
-            at = line.get_transform().transform(finite(line)) / (width, height)
-            for (x, y), run in zip(at.tolist(), _runs.get(line, ()), strict=False):
+        for line in (line for line in lines if line in _runs):
+            mask = seen(line)
+            at = line.get_transform().transform(data(line)[mask]) / (width, height)
+            runs = [run for run, has_position in zip(_runs[line], mask, strict=True) if has_position]
+            for (x, y), run in zip(at.tolist(), runs, strict=True):
                 yield Point(round(100 * x, 2), round(100 * (1 - y), 2), number, run)
 
 
