@@ -19,7 +19,7 @@ from matplotlib.figure import Figure
 from mpm_verify.cases.harness.build import Asked, build
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.cases.mms.run import Run
-from mpm_verify.reports.components import page, run_cards
+from mpm_verify.reports.components import page, references, run_cards
 from mpm_verify.reports.components.badges import Badge, shortened
 from mpm_verify.reports.components.latex import booktabs
 from mpm_verify.reports.components.latex import text as latex_of
@@ -31,7 +31,7 @@ from mpm_verify.reports.figures import drawn, style
 from mpm_verify.reports.frames import read
 from mpm_verify.reports.indexed import UNREADABLE
 from mpm_verify.reports.sentences import commands
-from mpm_verify.solver.plugins import CASES, KINDS, available, path
+from mpm_verify.solver.plugins import CASES, KINDS, PROBLEMS, available, path
 from mpm_verify.verify.options import values
 
 
@@ -279,8 +279,36 @@ def test_a_study_cites_what_it_used(tmp_path: Path) -> None:
     assert "sadeghirad2011" in found.text
     assert "sulsky1994" not in found.text
     assert found.count == found.text.count("\n@") + 1
-    assert not found.missing
-    assert CASES in KINDS
+    assert "no entry here" not in found.text
+
+
+def test_a_source_without_an_entry_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In a line that BibTeX passes over, and it is no entry; what is beside it has its own."""
+    known = entries()
+    lost = known.pop("10.1002/nme.3110")
+    monkeypatch.setattr(references, "entries", lambda: known)
+    with fixtures.sources():
+        found = cited(read(fixtures.make(tmp_path, ("cpdi",))))
+    assert found.text.endswith("\n% doi:10.1002/nme.3110, no entry here\n")
+    assert lost not in found.text
+    assert found.count == found.text.count("\n@") + 1
+
+
+def test_every_shipped_source_has_an_entry() -> None:
+    """Those of all files of a case, not of its case.py alone, and of all plug-ins."""
+    files = {file for case in available(CASES) for file in references.of_case(case)}
+    files |= {path(kind, name) for kind in KINDS for name in available(kind)}
+    used = {doi for file in files for doi in named(file.read_text(encoding="utf-8"))}
+    assert len(used) > 20
+    assert not used - set(entries())
+
+
+def test_the_files_of_a_case() -> None:
+    """All of its folder, but no problem of a benchmark that a study did not ask for; none of a user's case."""
+    assert "10.1103/PhysRevE.72.041301" in {doi for f in references.of_case("column") for doi in named(f.read_text())}
+    problems = {path(PROBLEMS, name) for name in available(PROBLEMS)}
+    assert not problems & set(references.of_case("benchmark"))
+    assert references.of_case("own.py") == []
 
 
 # ---- a folder of studies

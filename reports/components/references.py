@@ -10,28 +10,27 @@ from typing import Any
 from mpm_verify.reports.components.page import TEMPLATES
 from mpm_verify.reports.components.take import File, encoded
 from mpm_verify.reports.frames import Record
-from mpm_verify.solver.plugins import CASES, available, path, split
+from mpm_verify.solver.plugins import CASES, KINDS, available, folder, path, split
 
 DOI = re.compile(r"doi:(10\.\d{4,9}/[^\s\"`]+)")
 
 
 @dataclass(frozen=True)
 class Cited:
-    """BibTeX entries as one text, how many they are, and as a file; DOIs without an entry."""
+    """BibTeX entries as one text, with a line for each DOI that has none; how many they are, and as a file."""
 
     text: str
     count: int
     file: File
-    missing: tuple[str, ...]
 
 
 def cited(record: Record) -> Cited:
     """Entries of what a study used, this program first."""
     known, used = entries(), dois(record)
     found = [known[doi] for doi in used if doi in known]
-    text = "\n".join([program(record), *found])
-    missing = tuple(doi for doi in used if doi not in known)
-    return Cited(text, 1 + len(found), encoded("references.bib", "BibTeX", text.encode()), missing)
+    missing = "".join(f"% doi:{doi}, no entry here\n" for doi in used if doi not in known)
+    text = "\n".join(filter(None, [program(record), *found, missing]))
+    return Cited(text, 1 + len(found), encoded("references.bib", "BibTeX", text.encode()))
 
 
 def entries() -> dict[str, str]:
@@ -47,8 +46,11 @@ def dois(record: Record) -> list[str]:
 
 
 def of_case(case: str) -> list[Path]:
-    """File of a shipped case; that of a user's own names nothing that is known here."""
-    return [path(CASES, case)] if case in available(CASES) else []
+    """Files of a shipped case but its plug-ins, `case.py` first; a user's own names nothing that is known here."""
+    if case not in available(CASES):
+        return []
+    file, apart = path(CASES, case), {folder(package) for package in KINDS if package != CASES}
+    return [file, *(one for one in sorted(file.parent.rglob("*.py")) if one != file and one.parent not in apart)]
 
 
 def plugins(run: Any) -> Iterator[Path]:
