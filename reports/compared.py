@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from math import isclose, nan
+from math import isclose, isfinite, nan
 from typing import Any, Literal
 
 from mpm_verify.reports.frames import Record
@@ -23,7 +23,7 @@ class Change:
     @property
     def ratio(self) -> str:
         """Ratio of two numbers as text; empty of anything else."""
-        if all(isinstance(value, float) for value in (self.before, self.after)) and self.before:
+        if all(isinstance(value, float) and isfinite(value) for value in (self.before, self.after)) and self.before:
             return f"{self.after / self.before:.6g} times"
         return ""
 

@@ -6,10 +6,9 @@ from os.path import relpath
 from pathlib import Path
 
 from mpm_verify.cases.harness.store import StoreError
-from mpm_verify.reports import words
 from mpm_verify.reports.components.cards import summary
 from mpm_verify.reports.frames import Record, read
-from mpm_verify.reports.sentences.headline import headline
+from mpm_verify.reports.sentences.headline import EARLIER, headline, passed
 
 UNREADABLE = "UNREADABLE"
 
@@ -53,12 +52,8 @@ def entry(folder: Path, study: Path) -> Entry:
 
 def line(record: Record) -> str:
     """Line on what came out: what methods do where orders are judged, and how many checks pass."""
-    checks = record.analysis.checks
-    passed = sum(check.outcome == "PASS" for check in checks)
     judged = headline(record) or (summary(record) if record.study.plans else "")
-    earlier = "Computed by other source code than is installed." if record.earlier else ""
-    told = f"{passed} of {words.count(len(checks), 'check')} pass." if checks else ""
-    return " ".join(filter(None, [judged, told, earlier]))
+    return " ".join(filter(None, [judged, passed(record.analysis.checks), EARLIER if record.earlier else ""]))
 
 
 def written(study: Path) -> str:

@@ -62,6 +62,13 @@ def sci(value: float | None) -> str:
     return f"{digits}e{int(exponent)}".replace("-", MINUS if value < 0 else "-", 1)
 
 
+def value(number: Any) -> str:
+    """Value of a run: a number with six digits, a dash where it is none; what is no float as it is."""
+    if isinstance(number, float):
+        return DASH if math.isnan(number) else f"{number:.6g}"
+    return str(number)
+
+
 def order(value: float | None) -> str:
     """Order with two decimals with a true minus sign; a dash for nothing."""
     if value is None or math.isnan(value):

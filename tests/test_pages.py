@@ -6,8 +6,11 @@ import json
 import re
 from base64 import b64decode
 from dataclasses import replace
+from html import unescape
+from math import nan
 from pathlib import Path
 from typing import Any
+from urllib.parse import unquote, urljoin, urlsplit
 
 import fixtures_study as fixtures
 import numpy as np
@@ -17,8 +20,11 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 
 from mpm_verify.cases.harness.build import Asked, build
+from mpm_verify.cases.harness.checks import Check
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.cases.mms.run import Run
+from mpm_verify.reports import words
+from mpm_verify.reports.compared import Change
 from mpm_verify.reports.components import page, references, run_cards
 from mpm_verify.reports.components.badges import Badge, shortened
 from mpm_verify.reports.components.latex import booktabs
@@ -30,8 +36,12 @@ from mpm_verify.reports.components.take import beside
 from mpm_verify.reports.figures import drawn, style
 from mpm_verify.reports.frames import read
 from mpm_verify.reports.indexed import UNREADABLE
+from mpm_verify.reports.pages import _diff
 from mpm_verify.reports.sentences import commands
+from mpm_verify.reports.sentences.headline import passed
+from mpm_verify.reports.tables.markdown import row
 from mpm_verify.solver.plugins import CASES, KINDS, PROBLEMS, available, path
+from mpm_verify.verify.commands import diff
 from mpm_verify.verify.options import values
 
 
@@ -342,6 +352,31 @@ def broken(folder: Path) -> None:
     (folder / "study.json").write_text("{")
 
 
+def test_an_index_leads_to_folders_of_any_name(verify: Call, tmp_path: Path) -> None:
+    """With signs that mean something in an address: the link, read as one, is the path of the page."""
+    names = {"a#1", "b?x=1", "c%20d", "e f", "g:h", 'i"&'}
+    for name in names:
+        broken(tmp_path / "results" / name)
+        (tmp_path / "results" / name / "report.html").write_text("")
+    assert verify("index")[0] == 0
+    links = re.findall(r'<th scope="row"><a href="(.*?)"', (tmp_path / "results" / "index.html").read_text())
+    addresses = [urlsplit(urljoin("file:///results/", unescape(link))) for link in links]
+    assert {unquote(one.path) for one in addresses} == {f"/results/{name}/report.html" for name in names}
+    assert not any(one.query or one.fragment for one in addresses)
+
+
+def test_how_many_checks_pass() -> None:
+    """One sentence, on every page and in every summary."""
+    checks = [Check("g", "n", found, 1.0, "at_most", "") for found in (0.5, 1.0, 2.0)]
+    assert [passed(checks), passed(checks[:1]), passed(checks[2:]), passed([])] == [
+        "2 of 3 checks pass.", "1 of 1 check passes.", "0 of 1 check passes.", "",
+    ]  # fmt: skip
+
+
+def test_a_row_in_markdown_has_its_cells() -> None:
+    assert row(["own|file.py", "a <b>", "two\nlines"]) == "| own\\|file.py | a &lt;b> | two lines |"
+
+
 def test_an_index_on_a_terminal(verify: Call, tmp_path: Path) -> None:
     broken(tmp_path / "results" / "mine")
     code, out, _ = verify("index")
@@ -396,6 +431,19 @@ def test_a_page_of_two_studies(verify: Call, tmp_path: Path) -> None:
     assert f"{1.01**128:.6g} times" in text
     assert alike[0] == 0
     assert "ALIKE" in (tmp_path / "same.html").read_text()
+
+
+def test_a_number_that_one_study_lacks_is_a_dash(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """On the terminal and on the page, and its ratio is empty."""
+    one = Change("run", "u rms", 0.1234567, nan)
+    assert (words.value(one.before), words.value(one.after), one.ratio) == ("0.123457", words.DASH, "")
+    assert Change("run", "u rms", 0.5, 1.0).ratio == "2 times"
+    assert words.DASH in str(_diff.table("Errors", [one]).rows[0])
+    printed = io.StringIO()
+    monkeypatch.setattr("sys.stdout", printed)
+    diff.show([one])
+    assert words.DASH in printed.getvalue()
+    assert "nan" not in printed.getvalue()
 
 
 def test_a_page_that_is_none(verify: Call, tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 import base64
 from dataclasses import dataclass
 from pathlib import Path
+from urllib.parse import quote
 
 TYPES = {".svg": "image/svg+xml", ".pdf": "application/pdf", ".csv": "text/csv;charset=utf-8",
          ".tex": "text/x-tex;charset=utf-8", ".bib": "text/x-bibtex;charset=utf-8", ".png": "image/png"}  # fmt: skip
@@ -26,5 +27,5 @@ def encoded(name: str, kind: str, content: bytes) -> File:
 
 def beside(path: Path) -> File:
     """File of a figure: inside the page, or where it is large the file beside it."""
-    kind, content, link = path.suffix[1:].upper(), path.read_bytes(), f"{path.parent.name}/{path.name}"
+    kind, content, link = path.suffix[1:].upper(), path.read_bytes(), quote(f"{path.parent.name}/{path.name}")
     return File(path.name, kind, link if len(content) > MOST else encoded(path.name, kind, content).link, link)

@@ -4,7 +4,8 @@ from mpm_verify.reports import words
 from mpm_verify.reports.components.logs import failed
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences import benchmark, box, commands, controls, own_solver, verdicts
-from mpm_verify.reports.sentences.headline import badge, headline
+from mpm_verify.reports.sentences.headline import badge, headline, passed
+from mpm_verify.reports.tables.markdown import escaped, row
 
 MARKS = {"PASS": "✅", "FAIL": "❌", "INCONCLUSIVE": "❔", "ERROR": "⚠️"}
 SPOILT = {"benchmark": benchmark.control, "box": box.control}  # cases with failing controls
@@ -27,7 +28,7 @@ def markdown(record: Record) -> str:
             cells = (f"{mark} {said}", record.label(plan.run), words.measured(plan),
                      words.order(v.observed), verdicts.registered(plan.expectation),
                      commands.reason(study, f))  # fmt: skip
-            lines.append(f"| {' | '.join(map(escaped, cells))} |")
+            lines.append(row(cells))
     if study.case in SPOILT and (spoilt := SPOILT[study.case](record)):
         lines += ["", spoilt]
     if told := controls.sentence(found.controls):
@@ -37,11 +38,6 @@ def markdown(record: Record) -> str:
         lines += [f"- {escaped(log.sentence)}", "", *(f"      {line}" for line in log.lines), ""]
     if found.checks:
         missed = [check for check in found.checks if check.outcome != "PASS"]
-        lines += ["", f"{len(found.checks) - len(missed)} of {len(found.checks)} checks pass."]
+        lines += ["", passed(found.checks)]
         lines += [f"- {MARKS[check.outcome]} {escaped(f'{check.group}: {check.name}')}" for check in missed]
     return "\n".join(lines) + "\n"
-
-
-def escaped(text: str) -> str:
-    """Text of a table cell."""
-    return " ".join(text.replace("|", "\\|").replace("<", "&lt;").split())

@@ -1,9 +1,7 @@
 """Page of two studies compared: how many of what differ, then verdicts, orders, ends of runs and numbers."""
 
 from collections.abc import Sequence
-from math import isnan
 from pathlib import Path
-from typing import Any
 
 from mpm_verify.cases.harness.store import Store
 from mpm_verify.reports import words
@@ -44,12 +42,5 @@ def page(path: Path, a: Record, b: Record, found: Sequence[Change], both: int, t
 
 def table(caption: str, found: Sequence[Change]) -> Table:
     """Table of changes of one kind, below what each is of."""
-    rows = [(one.of, one.what, told(one.before), told(one.after), one.ratio) for one in found]
+    rows = [(one.of, one.what, words.value(one.before), words.value(one.after), one.ratio) for one in found]
     return Table(caption, ("of", *HEAD), tuple(rows), heads=2, grouped=True)
-
-
-def told(value: Any) -> str:
-    """Value as text, a dash where there is none."""
-    if isinstance(value, float):
-        return words.DASH if isnan(value) else f"{value:.6g}"
-    return str(value)

@@ -19,7 +19,7 @@ from mpm_verify.reports.figures import drawn, style
 from mpm_verify.reports.figures.convergence import cell_axis
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences import commands, controls, failures, verdicts
-from mpm_verify.reports.sentences.headline import badge, headline
+from mpm_verify.reports.sentences.headline import badge, headline, passed
 from mpm_verify.reports.tables import plain
 
 
@@ -51,10 +51,8 @@ def page(
 
 def said(record: Record) -> str:
     """Lead: what the order rule says where it is asked, and how many checks pass."""
-    checks = record.analysis.checks
     judged = [headline(record), summary(record)] if record.study.plans else []
-    passed = sum(check.outcome == "PASS" for check in checks)
-    return " ".join(filter(None, [*judged, f"{passed} of {len(checks)} checks pass." if checks else ""]))
+    return " ".join(filter(None, [*judged, passed(record.analysis.checks)]))
 
 
 def sections(record: Record, add: Add) -> list[Section]:

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from mpm_verify.cases.harness.checks import Check
 from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.cases.judging.records import Expectation, Outcome
 from mpm_verify.reports import words
@@ -20,6 +21,8 @@ VERBS = {  # of one method and of several, in the order in which they are told
 }
 APART = ("solution", "ppc", "measured")  # fields that may tell apart where one method does this and where that
 WITH = {"solution": "on {}", "ppc": "with {} per cell", "measured": "in {}"}
+
+EARLIER = "Computed by other source code than is installed."
 
 
 def met(e: Expectation | None) -> str:
@@ -43,6 +46,13 @@ def headline(record: Record) -> str:
             told[_verb(finding)].append(finding)
     clauses = [_clause(verb, found, told) for verb, found in told.items() if found]
     return f"{'; '.join(clauses)}." if clauses else ""
+
+
+def passed(checks: Sequence[Check]) -> str:
+    """Sentence on how many checks pass; empty without any."""
+    count = sum(check.outcome is Outcome.PASS for check in checks)
+    verb = "passes" if len(checks) == 1 else "pass"
+    return f"{count} of {words.count(len(checks), 'check')} {verb}." if checks else ""
 
 
 def _verb(finding: Finding) -> str:

@@ -5,6 +5,7 @@ from typing import Any
 
 from mpm_verify.reports import words
 from mpm_verify.reports.frames import Record
+from mpm_verify.reports.tables.markdown import row as row_of
 from mpm_verify.solver.plugins import METHODS, create, label
 
 NAMES = ("ns", "ratio", "low", "high", "parallel", "threads")
@@ -53,4 +54,4 @@ def cells(row: Mapping[str, Any], more: Sequence[str]) -> tuple[str, ...]:
 def markdown(rows: Rows) -> str:
     """Table in Markdown."""
     lines = [head(rows), ["---"] * len(head(rows)), *(cells(row, more(rows)) for row in rows)]
-    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
+    return "".join(f"{line}\n" for line in map(row_of, lines))

@@ -67,6 +67,7 @@ def show(found: "Sequence[Change]") -> None:
     from rich.table import Table
     from rich.text import Text
 
+    from mpm_verify.reports import words
     from mpm_verify.verify.terminal.table import Listened
 
     out = Listened(highlight=False, soft_wrap=False)
@@ -76,15 +77,10 @@ def show(found: "Sequence[Change]") -> None:
     for name in ("what", "before", "after", "after / before", "of"):
         table.add_column(name, overflow="fold", justify="left" if name in ("what", "of") else "right")
     for one in found[:MOST]:
-        table.add_row(one.what, told(one.before), told(one.after), one.ratio, Text(one.of))
+        table.add_row(one.what, words.value(one.before), words.value(one.after), one.ratio, Text(one.of))
     out.print(table)
     if len(found) > MOST:
         out.print(f"and {len(found) - MOST} more; --page changes.html or --json has all")
-
-
-def told(value: Any) -> str:
-    """Value of a run as text."""
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def add(app: typer.Typer) -> None:
