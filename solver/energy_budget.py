@@ -75,7 +75,7 @@ def in_step(mass, momentum_force, velocity_acceleration, undamped, after, held, 
                     sums[WALLS] += impulse * (mean + 0.5 * (1.0 - kept) * (after[i, a] - w))
                     sums[IMPULSE + a] += impulse
         for a in range(2):
-            after[i, a] = velocity_acceleration[i, a]
+            after[i, a] = velocity_acceleration[i, a] if mass[i] > cutoff else 0.0
 
 
 @kernel(nothing(F1, F2, F2, F2, F2, F1, f8, f8, F1))
@@ -93,7 +93,7 @@ def in_filter(mass, velocity_acceleration, undamped, after, filtered, g, dt, cut
                 sums[HALF_STEP] -= 0.5 * dt * mass[i] * g[a] * more
                 sums[IMPULSE + a] -= mass[i] * filtered[i, a]
         for a in range(2):
-            after[i, a] = velocity_acceleration[i, a]
+            after[i, a] = velocity_acceleration[i, a] if mass[i] > cutoff else 0.0
 
 
 def lumped(grid: Grid, cutoff: float) -> Floats:

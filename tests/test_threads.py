@@ -1,5 +1,6 @@
 """Slabs and threads: how particles are shared out changes no bit, and how they are presented none but the last."""
 
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -15,17 +16,23 @@ from mpm_verify.cases.harness.study import Study
 from mpm_verify.cases.mms.execute import setup
 from mpm_verify.cases.mms.run import Run
 from mpm_verify.solver._jit import use_threads
-from mpm_verify.solver.boundary import box
+from mpm_verify.solver.boundary import Walls, behind, box, moving
 from mpm_verify.solver.energy_budget import Budget
 from mpm_verify.solver.failure import RunFailed
+from mpm_verify.solver.friction import frictional
 from mpm_verify.solver.layout import rectangle
 from mpm_verify.solver.material.neo_hookean import NeoHookean
-from mpm_verify.solver.plugins import SOLUTIONS, available, create, load
+from mpm_verify.solver.plugins import MATERIALS, SOLUTIONS, TRANSFERS, available, create, load
+from mpm_verify.solver.pooling import Pooling
+from mpm_verify.solver.pushed import pushed
 from mpm_verify.solver.slabs import SLAB_COLUMNS, Slabs
+from mpm_verify.solver.smoothing.deviatoric import Deviatoric
+from mpm_verify.solver.smoothing.fbar import Fbar
 from mpm_verify.solver.state import Grid, Particles
 from mpm_verify.solver.step import Model, Scheme, advance, particles_to_grid
 
 BASES = available("mpm_verify.solver.basis")
+SAND = "mohr_coulomb:E=1,rho0=1,void=1"
 LAW = NeoHookean(E=1.0, nu=0.3, rho0=1.0)
 ARRAYS = ("X", "x", "v", "F", "sigma", "m", "V0", "domain")
 USUAL = Scheme()
@@ -36,15 +43,23 @@ def still(p: Particles, t: float) -> None:
     """No body force."""
 
 
-def channel(name: str, columns: int = 64, rows: int = 12, order: Any = None, scheme: Scheme = USUAL) -> Model:
+def rollers(grid: Grid) -> Walls:
+    """Walls without friction, at rest."""
+    return box(grid, "roller")
+
+
+def channel(
+    name: str, columns: int = 64, rows: int = 12, order: Any = None, scheme: Scheme = USUAL, law: Any = LAW,
+    walls: Callable[[Grid], Walls] = rollers, **more: Any,
+) -> Model:  # fmt: skip
     """A body of 6 x 6 cells near the left end of a channel with cells of side one, presented in the given order."""
     grid = Grid(1.0, np.zeros(2), np.array([columns, rows], dtype=float))
     basis = load("mpm_verify.solver.basis", name)()
-    whole = basis.populate(rectangle(grid.lower, grid.upper, grid.dx, 4), LAW.rho0)
+    whole = basis.populate(rectangle(grid.lower, grid.upper, grid.dx, 4), law.rho0)
     keep = np.flatnonzero((np.abs(whole.X - [4, rows / 2]) < 3).all(axis=1))
     keep = keep if order is None else keep[order]
     body = Particles(whole.X[keep], whole.m[keep], whole.V0[keep], whole.domain[keep])
-    return Model(grid, body, basis, LAW, box(grid, "roller"), 0.05, scheme)
+    return Model(grid, body, basis, law, walls(grid), 0.05, scheme, **more)
 
 
 def fly(m: Model, steps: int) -> Model:
@@ -74,13 +89,52 @@ def test_order_of_presentation(name: str, monkeypatch: pytest.MonkeyPatch) -> No
     assert np.abs(plain.F - np.eye(2)).max() > 0.05
 
 
-@pytest.mark.parametrize("name", ["mpm", "cpdi", "bspline3", "tlmpm"])
-def test_nodes_that_no_particle_touches(name: str) -> None:
+def rough(grid: Grid) -> Walls:
+    """Walls with friction at the bottom and the top."""
+    return frictional(grid, ("roller", "roller", 0.3, 0.3))
+
+
+def squeezed(grid: Grid) -> Walls:
+    """Walls whose bottom is pushed up, slower and slower."""
+    return pushed(rollers(grid), behind(grid, 2), 1, lambda t: 0.05 * t / (1 + t), rough=True)
+
+
+def swept(grid: Grid) -> Walls:
+    """Walls all of which go to the right, faster and faster."""
+    held = rollers(grid).held
+    return moving(grid, lambda nodes, t, dt: (held, np.full(nodes.shape, 0.1 * t), np.full(nodes.shape, 0.1)))
+
+
+def stepped(transfer: str, stress: str) -> Scheme:
+    """Scheme of a transfer and a stress update."""
+    return Scheme(create(TRANSFERS, transfer), stress)
+
+
+WINDOWS: dict[str, tuple[str, Callable[[], dict[str, Any]]]] = {  # method, and what its channel has
+    **{name: (name, dict) for name in ("mpm", "cpdi", "cpdi2", "bspline3", "tlmpm")},
+    "apic musl": ("cpdi", lambda: {"scheme": stepped("apic", "musl")}),
+    "fmpm usf": ("mpm", lambda: {"scheme": stepped("fmpm", "usf")}),
+    "friction": ("cpdi", lambda: {"rows": 6, "walls": rough}),
+    "friction fmpm musl": ("bspline3", lambda: {"rows": 6, "walls": rough, "scheme": stepped("fmpm", "musl")}),
+    "pushed": ("cpdi", lambda: {"rows": 6, "walls": squeezed}),
+    "moving": ("cpdi2", lambda: {"rows": 6, "walls": swept}),
+    "smoothing": ("cpdi", lambda: {"smoothing": Fbar()}),
+    "pooling": ("cpdi", lambda: {"law": create(MATERIALS, SAND), "pooling": Pooling()}),
+    "pooling smoothing": (
+        "cpdi",
+        lambda: {"law": create(MATERIALS, SAND), "pooling": Pooling(), "smoothing": Deviatoric()},
+    ),
+}
+
+
+@pytest.mark.parametrize("case", WINDOWS)
+def test_nodes_that_no_particle_touches(case: str) -> None:
     """A fast body takes its columns of nodes along, also where it is put elsewhere: all nodes give the same bits.
 
     Arrays of the nodes that it does not touch hold zeros.
     """
-    some, every = channel(name), channel(name)
+    name, options = WINDOWS[case]
+    some, every = (channel(name, **options()) for _ in range(2))
     every.slabs.whole = True
     every.slabs.bound(every.grid)
     budgets = [Budget(np.array([0.0, -1.0])) for _ in range(2)]
@@ -89,6 +143,8 @@ def test_nodes_that_no_particle_touches(name: str) -> None:
         fly(m, 20)
         for shift in (40.0, -20.0, -20.0):
             m.particles.x[:, 0] += shift
+            if name == "cpdi2":  # its corners are points of their own
+                m.particles.domain[:, ::2] += shift
             for _ in range(5):
                 advance(m, still)
             if shift > 0:
@@ -96,7 +152,13 @@ def test_nodes_that_no_particle_touches(name: str) -> None:
     assert alone(some, budgets[0])
     for array in ARRAYS:
         np.testing.assert_array_equal(getattr(some.particles, array), getattr(every.particles, array))
+    np.testing.assert_array_equal(some.particles.history, every.particles.history)
     np.testing.assert_array_equal(some.grid.mass, every.grid.mass)
+    for array in ("held", "value", "rate"):
+        np.testing.assert_array_equal(getattr(some.walls, array), getattr(every.walls, array))
+    taken = [sum(getattr(part, "taken", 0.0) for part in (m.walls, m.pooling)) for m in (some, every)]
+    assert taken[0] == taken[1]
+    assert (taken[0] > 0) == case.startswith(("friction", "pooling"))
     np.testing.assert_array_equal(budgets[0].sums, budgets[1].sums)
     assert (budgets[0].sums != 0).sum() > 5
 
