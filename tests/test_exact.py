@@ -2,17 +2,21 @@
 
 from collections.abc import Iterator
 
+import numpy as np
 import pytest
+from fixtures_command import TOP
 from fixtures_planted import DEFECTS, PLACEBOS, Defect, Plant
 
 from mpm_verify.cases.exact import battery
 from mpm_verify.cases.exact.battery import run
 from mpm_verify.cases.exact.body import Subject
 from mpm_verify.cases.exact.groups import GROUPS, group_of
+from mpm_verify.mms.constitutive import driver, hardening, plastic
+from mpm_verify.mms.constitutive.surfaces import surfaces
 from mpm_verify.mms.constitutive.tested import MARGIN, Tested
 from mpm_verify.reports.sentences import exact as said
 from mpm_verify.solver._jit import use_threads
-from mpm_verify.solver.plugins import MATERIALS, METHODS, available
+from mpm_verify.solver.plugins import MATERIALS, METHODS, available, create
 
 FAST = (  # one of each kind; the others take ten seconds together
     "gradients swapped", "round for floor", "domains by F^T", "sigma_xy in one row", "L transposed", "FLIP 0.99",
@@ -122,3 +126,24 @@ def test_bad_names_are_refused() -> None:
         run("cpdy")
     with pytest.raises(ValueError, match="no material"):
         run("cpdi", "steel")
+
+
+def test_the_numbers_of_states_that_are_told() -> None:
+    """docs/exact.md counts the trial stresses with equal principal stresses, and tells the strains of the sand."""
+    text = " ".join((TOP / "docs/exact.md").read_text().split())
+    material = create(MATERIALS, "mohr_coulomb")
+    sigma, D = plastic.states(driver.Subject(material), surfaces(material))
+    trial = np.linalg.eigvalsh(plastic.whole(sigma + driver.elastic(material.lam, material.mu, D)))[plastic.COUNT :]
+    same = (np.diff(trial, axis=1) < 1e-12 * np.abs(trial).max()).sum(axis=1)
+    two, three = (int((same == count).sum()) for count in (1, 2))
+    assert f"Of {len(D)} steps" in text
+    assert (
+        f"{len(trial)} from an isotropic stress, with two equal principal trial stresses in {two} and three in {three}"
+        in text
+    )
+    sand = create(MATERIALS, "ubcsand")
+    start, strains = hardening.states(sand)
+    s = -start.sigma[:, :2].sum(axis=1) / 2
+    most = np.abs(strains).max(axis=(1, 2)) * sand.KGe * sand.Pa * (s / sand.Pa) ** sand.ne / s
+    assert most.max() == pytest.approx(1e-4, rel=0.02)
+    assert f"{len(s)} steps of strains up to 10⁻⁴ s/G" in text

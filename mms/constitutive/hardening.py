@@ -18,7 +18,7 @@ from mpm_verify.solver.state import Floats
 
 PARTS = {"secant": Part.STRESS, "hardening": Part.STRESS, "flow_rule": Part.HISTORY, "neutral": Part.STRESS}
 MANY = 4000  # some in a thousand are rounded to the other side of the yield surface
-SHORT = 1e-4  # stress increments over the mean stress
+SHORT = 1e-4  # largest strain increments times G, over the mean stress
 POINTS_OF_GAUSS = np.polynomial.legendre.leggauss(5)
 
 

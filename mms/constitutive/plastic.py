@@ -130,8 +130,8 @@ def combined(excess: Floats, flows: Floats, left: Floats, scale: Floats) -> Floa
 def states(subject: Subject, known: Surfaces) -> tuple[Floats, Floats]:
     """Admissible stresses (P,4) and strain increments (P,2,2) from them.
 
-    Those of random axes have zz anywhere among the principal stresses; from isotropic stresses increments along the
-    axes and at 45 degrees lead to trial stresses of which two or three are the same.
+    Those of random axes have zz anywhere among the principal stresses; of the trial stresses that increments along the
+    axes, and with shear, lead to from isotropic stresses half have two or three that are the same.
     """
     unit = CONFINED * subject.stress
     size = unit / (2 * subject.material.mu) * np.resize(SIZES, COUNT)
