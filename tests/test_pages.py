@@ -1,14 +1,17 @@
 """Parts of pages: tables that fit, LaTeX, points of figures, cards of runs, references, an index, differences."""
 
 import csv
+import importlib
 import io
 import json
 import re
 from base64 import b64decode
+from dataclasses import fields as dataclass_fields
 from dataclasses import replace
 from html import unescape
 from math import nan
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 from urllib.parse import unquote, urljoin, urlsplit
 
@@ -18,10 +21,14 @@ import pytest
 from fixtures_command import Call, caller, one_line
 from matplotlib import rc_context
 from matplotlib.figure import Figure
+from typer.main import get_command
 
+from mpm_verify.cases.bench.run import Run as BenchRun
 from mpm_verify.cases.harness.build import Asked, build
 from mpm_verify.cases.harness.checks import Check
+from mpm_verify.cases.harness.contract import case_named
 from mpm_verify.cases.harness.store import Store
+from mpm_verify.cases.harness.study import Study
 from mpm_verify.cases.mms.run import Run
 from mpm_verify.reports import words
 from mpm_verify.reports.compared import Change
@@ -37,12 +44,15 @@ from mpm_verify.reports.figures import drawn, style
 from mpm_verify.reports.frames import read
 from mpm_verify.reports.indexed import UNREADABLE
 from mpm_verify.reports.pages import _diff
-from mpm_verify.reports.sentences import commands
+from mpm_verify.reports.sentences import commands, must_fail
 from mpm_verify.reports.sentences.headline import passed
 from mpm_verify.reports.tables.markdown import row
 from mpm_verify.solver.plugins import CASES, KINDS, PROBLEMS, available, path
 from mpm_verify.verify.commands import diff
+from mpm_verify.verify.main import application
 from mpm_verify.verify.options import values
+
+WORDLESS = ("mms", "wave_bar")  # cases without sentences of their own
 
 
 @pytest.fixture
@@ -163,13 +173,12 @@ def test_points_stand_where_they_are_drawn(tmp_path: Path) -> None:
     np.testing.assert_allclose(first, at, atol=0.02)
 
 
-@pytest.mark.parametrize("gap", [float("nan"), 0.0])
-def test_a_point_without_a_position_takes_its_run_along(tmp_path: Path, gap: float) -> None:
+def test_a_point_without_a_position_takes_its_run_along(tmp_path: Path) -> None:
     """One that is not a number, or zero on a logarithmic axis: those behind it are still of their own runs."""
-    figure = lines_of([(0.01, 1e-4), (0.1, gap), (1.0, 1.0)], [(0.1, 1e-3)])
-    told = {Run(cells=2 + k).digest: f"run {k}" for k in range(3)}
+    figure = lines_of([(0.01, 1e-4), (0.05, nan), (0.1, 0.0), (1.0, 1.0)], [(0.1, 1e-3)])
+    told = {Run(cells=2 + k).digest: f"run {k}" for k in range(4)}
     first, last = adder(tmp_path, told=told)("drawn", figure, "Errors.").points
-    assert (first.text, last.text) == ("run 0", "run 2")
+    assert (first.text, last.text) == ("run 0", "run 3")
     assert first.left < last.left < 100
     assert 0 < last.top < first.top < 100
 
@@ -261,6 +270,39 @@ def test_badges_of_what_does_not_pass_come_first() -> None:
     assert shown[0].text == "bad"
     assert (shown[-1].badge, shown[-1].text) == ("and 9", "more that pass")
     assert shortened(many[:3]) == many[:3]
+
+
+@pytest.mark.parametrize("case", [name for name in available(CASES) if case_named(name).command])
+def test_the_command_of_a_case_has_an_option_for_each_field(case: str) -> None:
+    """But for those that it names itself."""
+    known = case_named(case)
+    name, *inside = known.command.split()
+    command: Any = get_command(application(name))
+    options = {
+        option for parameter in getattr(command, "commands", {}).get(name, command).params for option in parameter.opts
+    }
+    fields = {item.name for item in dataclass_fields(known.Run) if f"{{run.{item.name}}}" not in inside}
+    assert len(fields) > 3
+    assert {f"--{field.replace('_', '-')}" for field in fields - {"offset", "given"}} <= options
+
+
+def test_cases_that_state_no_command_have_no_command_of_a_run() -> None:
+    run = BenchRun()
+    assert commands.of_run(Study("t", "t", "", (run,), case="bench"), run) == ""
+
+
+@pytest.mark.parametrize("case", available(CASES))
+def test_a_case_with_failing_controls_says_so_itself(case: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its words have `control`, which no list repeats."""
+    record: Any = SimpleNamespace(study=SimpleNamespace(case=case))
+    words_of = importlib.import_module(f"{must_fail.__package__}.{case}") if case not in WORDLESS else must_fail
+    monkeypatch.setattr(words_of, "control", lambda record: "it failed, as it must", raising=False)
+    assert must_fail.of_case(record) == ("" if case in WORDLESS else "it failed, as it must")
+
+
+def test_a_users_case_has_no_words_of_ours() -> None:
+    record: Any = SimpleNamespace(study=SimpleNamespace(case="/tmp/own.py"))
+    assert must_fail.of_case(record) == ""
 
 
 # ---- references

@@ -34,6 +34,8 @@ from mpm_verify.solver.plugins import canonical as canonical_name
 
 __all__ = ["Result", "Run"]
 
+COMMAND = "benchmark {run.problem}"
+
 QUANTITIES, NORMS, JUDGED = ("u", "sigma"), ("rms",), None  # each problem has others, see `measures`
 LEVELS = 3  # of a Richardson extrapolation
 

@@ -26,6 +26,8 @@ from mpm_verify.solver.plugins import canonical as canonical_name
 
 __all__ = ["QUICK", "Result", "Run"]
 
+COMMAND = "box"
+
 FREE, WEIGHT, TOP, LARGEST, MOVING = 0.05, 0.05, 0.03, 8.0, 1e-4
 K, AROUND = 0.475, 0.075  # 0.40 to 0.55
 CARRIED = [f"V sigma_yy over the weight above, row {k}" for k in range(1, ROWS + 1)]

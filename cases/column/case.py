@@ -11,6 +11,8 @@ from mpm_verify.solver.plugins import METHODS, create, label
 
 __all__ = ["Result", "Run", "check", "examine"]
 
+COMMAND = "column"
+
 Run, Result = ColumnRun, ColumnResult
 
 

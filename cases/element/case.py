@@ -31,6 +31,8 @@ from mpm_verify.solver.plugins import canonical as canonical_name
 
 __all__ = ["AXES", "Result", "Run", "canonical", "check", "examine", "parts", "title"]
 
+COMMAND = "material {run.material}"
+
 Run, Result = ElementRun, ElementResult
 Key = tuple[str, float, str, int]  # material, stress, start and steps
 

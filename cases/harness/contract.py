@@ -9,6 +9,7 @@ and a module `execute.py` beside it, which is read when a run is to be done and 
     execute          (run, tick) -> (Result, arrays): runs to the end; what cannot go on is a failed Result; one that
                      takes a `checkpoint` too can go on from there, see checkpoint.py
 and, where they apply, instead of the defaults of Case:
+    COMMAND          command with an option for each field of Run but those in it: `benchmark {run.problem}`
     AXES             values of the axes that are not asked for, by field
     QUANTITIES, NORMS, JUDGED, expectation      what the order rule is asked, see cases/harness/build.py; the Run then
                                                 has the fields REFINES
@@ -75,6 +76,11 @@ class Case:
     def title(self) -> Callable[[Sequence[RunRecord]], str]:
         """Title of a study that has none of its own."""
         return self.module.title  # type: ignore[no-any-return]
+
+    @property
+    def command(self) -> str:
+        """Command with an option for each other field of a run, `benchmark {run.problem}`; empty where none is."""
+        return getattr(self.module, "COMMAND", "")
 
     @property
     def axes(self) -> Mapping[str, Sequence[Any]]:

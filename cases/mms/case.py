@@ -44,6 +44,8 @@ from mpm_verify.solver.stress_update import check_stress_update
 
 __all__ = ["AXES", "JUDGED", "NORMS", "QUANTITIES", "QUICK", "Result", "Run"]
 
+COMMAND = "mms"
+
 JUDGED = (JUDGED_QUANTITY,)
 REFUTES = tuple((quantity, "rms") for quantity in ("v", "F", "sigma"))
 OURS = (  # fields that a solver of somebody else does not take

@@ -23,6 +23,8 @@ from mpm_verify.solver.plugins import canonical as canonical_name
 
 __all__ = ["AXES", "QUICK", "Result", "Run"]
 
+COMMAND = "wave_bar"
+
 SMALL = 1e-4  # amplitude up to which the bar is linear
 HATS = ("mpm", "gimp", "cpgimp", "cpdi", "cpdi2", "tlmpm")  # methods with weights of hats at the quarter points
 FINE = 1 / 64  # where the closed form is close enough to be held against

@@ -3,12 +3,11 @@
 from mpm_verify.reports import words
 from mpm_verify.reports.components.logs import failed
 from mpm_verify.reports.frames import Record
-from mpm_verify.reports.sentences import benchmark, box, commands, controls, own_solver, verdicts
+from mpm_verify.reports.sentences import commands, controls, must_fail, own_solver, verdicts
 from mpm_verify.reports.sentences.headline import badge, headline, passed
 from mpm_verify.reports.tables.markdown import escaped, row
 
 MARKS = {"PASS": "✅", "FAIL": "❌", "INCONCLUSIVE": "❔", "ERROR": "⚠️"}
-SPOILT = {"benchmark": benchmark.control, "box": box.control}  # cases with failing controls
 MET = "🔷"  # a registered non-convergence that was seen
 
 
@@ -29,7 +28,7 @@ def markdown(record: Record) -> str:
                      words.order(v.observed), verdicts.registered(plan.expectation),
                      commands.reason(study, f))  # fmt: skip
             lines.append(row(cells))
-    if study.case in SPOILT and (spoilt := SPOILT[study.case](record)):
+    if spoilt := must_fail.of_case(record):
         lines += ["", spoilt]
     if told := controls.sentence(found.controls):
         lines += ["", told]

@@ -5,10 +5,10 @@ import shlex
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import fields
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+from mpm_verify.cases.harness.contract import case_named
 from mpm_verify.cases.harness.study import QuantityPlan, Study, head
 from mpm_verify.cases.harness.verdicts import Finding
 from mpm_verify.cases.judging.records import Action, Outcome, ReasonCode, Wanted
@@ -17,11 +17,6 @@ from mpm_verify.mms.discretisation import axisymmetric, dimension
 from mpm_verify.reports.sentences import any_code, own_solver, verdicts
 from mpm_verify.solver.failure import FailureKind
 from mpm_verify.solver.plugins import METHODS, SOLUTIONS, available, canonical, create, is_file, label, split
-
-COMMANDS = {  # of cases whose command has an option for each field of a run
-    "mms": "mms", "box": "box", "wave_bar": "wave_bar", "column": "column", "benchmark": "benchmark {run.problem}",
-    "element": "material {run.material}",
-}  # fmt: skip
 
 
 def reason(study: Study[Any], found: Finding) -> str:
@@ -174,13 +169,14 @@ def typed(study: Study[Any], plan: QuantityPlan[Any], wanted: Wanted) -> list[st
 
 def of_run(study: Study[Any], run: Any) -> str:
     """Command that runs this run; empty where none is known: of numbers that were given, and of particles elsewhere."""
-    if run.given or study.case not in COMMANDS or any(getattr(run, "offset", ())):
+    case = case_named(study.case)
+    if run.given or not case.command or any(getattr(run, "offset", ())):
         return ""
-    asked = {"method", "solution", *getattr(import_module(f"mpm_verify.cases.{study.case}.run"), "AXES", {})}
-    words = ["verify", *COMMANDS[study.case].format(run=run).split()]
+    asked = {"method", "solution", *case.axes}
+    words = ["verify", *case.command.format(run=run).split()]
     for item in fields(run):
         value = getattr(run, item.name)
-        if f"{{run.{item.name}}}" not in COMMANDS[study.case] and (value != item.default or item.name in asked):
+        if f"{{run.{item.name}}}" not in case.command and (value != item.default or item.name in asked):
             words += [f"--{item.name.replace('_', '-')}", relative(typed_value(value))]
     return shlex.join(words)
 

@@ -1,8 +1,21 @@
 """Sentence on failing controls: each has to be refused, and one that passes is an alarm."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from importlib import import_module
+from importlib.util import find_spec
 
 from mpm_verify.cases.judging.records import Outcome
+from mpm_verify.reports.frames import Record
+from mpm_verify.solver.plugins import CASES, available
+
+
+def of_case(record: Record) -> str:
+    """Sentence on the failing controls of a study: `control` of the words of its case; empty where that has none."""
+    case = record.study.case
+    if case not in available(CASES) or not find_spec(words := f"{__package__}.{case}"):
+        return ""
+    control: Callable[[Record], str] = getattr(import_module(words), "control", lambda record: "")
+    return control(record)
 
 
 def said(found: Mapping[str, Sequence[Outcome]]) -> str:
