@@ -94,6 +94,7 @@ def test_one_thread_judges_nothing(verify: Call, tmp_path: Path) -> None:
     code, out, _ = verify("bench", *options, "--page", "--out", "study")
     assert code == 3
     assert "give --parallel 2" in " ".join(out.split())
+    assert "1 thread\n" in out
     page = (tmp_path / "study/report.html").read_text()
     assert "give --parallel 2" in page
     assert "Here: 6 cells along a side with 1 per cell, 6 cells along a side with 4 per cell." in page

@@ -1,4 +1,4 @@
-"""Speed: processor time of a particle update by each method, over that of classical MPM, on this machine.
+"""Speed: processor time of a particle update by each method, over that of another one, on this machine.
 
 A unit square of one material turns in itself between rollers. Ratios are medians over alternating turns within one
 process, so that they can be compared with those of another machine, and they hold for the processor that is named

@@ -34,7 +34,7 @@ def head(rows: Rows) -> tuple[str, ...]:
     """Head of the table."""
     over, threads = (list(dict.fromkeys(row[name] for row in rows)) for name in ("over", "threads"))
     than = label(over[0]) if len(over) == 1 else "the other"
-    several = f"{float(threads[0]):.0f} threads" if len(threads) == 1 else "threads"
+    several = words.count(int(float(threads[0])), "thread") if len(threads) == 1 else "threads"
     return (*more(rows), "method", "nodes", "ns", "million/s", f"time over {than}", "quartiles", several)
 
 
