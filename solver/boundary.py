@@ -9,7 +9,7 @@ from numba import prange
 from numpy.typing import NDArray
 
 from mpm_verify.solver._jit import F1, F2, f8, flag, i8, kernel, nothing
-from mpm_verify.solver.state import Floats, Grid
+from mpm_verify.solver.state import Floats, Grid, Ints
 
 Kind = Literal["roller", "fixed", "free"]
 MASS_CUTOFF = 1e-12  # fraction of a particle's mass: below it a node's velocity is 0/0
@@ -53,6 +53,10 @@ class Walls:
     def damp(self, apply: "Apply", grid: Grid, dt: float, cutoff: float) -> float:
         """Damp by `apply` what is not held, and return the work that this takes in the step; see Damping.apply."""
         return apply(grid, self, dt, cutoff)
+
+    def closes(self, nodes: Ints, axis: int) -> bool:
+        """Whether no body passes these nodes along the axis."""
+        return bool(self.held[nodes, axis].all())
 
     def in_strain(self) -> tuple[NDArray[np.bool_], Floats, Floats]:
         """Components held of velocities that strain the particles and do not move them: `held`, `value` and `rate`."""

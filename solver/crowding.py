@@ -4,7 +4,7 @@ det F follows the gradient of the velocity and positions the velocity. Nothing e
 F alone: whatever brings particles together and no particle feels as a strain meets no resistance. Gravity finds it, so
 that with 9 particles per cell a heap is 8 % too small for its material. The space is where positions are:
 
-    phi = sum V N / space at each node, V = J V0 exp(-void) with voids closed, N hat functions, space dx^2 but for walls
+    phi = sum V N / space at each node, V = J V0 exp(-void), voids closed, N hat functions, space dx^2, less by walls
 
 Both sums are smoothed by (1 2 1)/4 along both axes, twice: after a collapse particles lie in their cells as if by
 chance, and phi scatters by 0.2 to 0.3 between nodes. Where it is above 1 + slack, ln J of the particles there falls by
@@ -23,6 +23,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from mpm_verify.solver._jit import F1, F2, f8, i8, kernel, nothing
+from mpm_verify.solver.boundary import Walls
 from mpm_verify.solver.context import Context
 from mpm_verify.solver.state import PAD, Floats, Grid
 
@@ -57,13 +58,22 @@ def collected(x, origin, inv_dx, nx, ny, values, out):
             out[p] += right * ((1.0 - above) * values[first + ny] + above * values[first + ny + 1])
 
 
-def spaces(grid: Grid) -> Floats:
-    """Area of the hat function of each node (nx,ny) within the walls."""
+def closed(grid: Grid, walls: Walls) -> tuple[bool, bool, bool, bool]:
+    """Whether a wall stands on the left, right, bottom and top side of the domain: beyond a free one there is space."""
+    column, row = np.arange(PAD, grid.ny - PAD), grid.ny * np.arange(PAD, grid.nx - PAD)
+    left, right = (walls.closes(i * grid.ny + column, 0) for i in (PAD, grid.nx - PAD - 1))
+    bottom, top = (walls.closes(row + j, 1) for j in (PAD, grid.ny - PAD - 1))
+    return left, right, bottom, top
+
+
+def spaces(grid: Grid, sides: tuple[bool, bool, bool, bool]) -> Floats:
+    """Area of the hat function of each node (nx,ny) within `sides` with walls, and within the grid, ghost cells too."""
     widths = []
-    for count in (grid.nx, grid.ny):
+    for count, lower, upper in ((grid.nx, *sides[:2]), (grid.ny, *sides[2:])):
+        first, last = PAD * lower, count - 1 - PAD * upper
         width = np.zeros(count)
-        width[PAD : count - PAD] = grid.dx
-        width[[PAD, count - PAD - 1]] *= 0.5
+        width[first : last + 1] = grid.dx
+        width[[first, last]] *= 0.5
         widths.append(width)
     return np.multiply.outer(*widths)
 
@@ -106,14 +116,16 @@ class Crowding:
     given: float = 0.0
     strain: float = 0.0
     space: Floats = field(default_factory=lambda: np.zeros((0, 0)), repr=False)
+    of: tuple[float, ...] = field(default=(), repr=False)  # the grid and its sides that `space` is of
 
     def relieve(self, context: Context) -> None:
         """Strain the particles that are crowded, and update their material."""
         p, grid, material = context.particles, context.grid, context.material
         if context.basis.reference:  # weights, and the forces that they give, know no crowding of positions
             return
-        if self.space.shape != (grid.nx, grid.ny):
-            self.space = smoothed(spaces(grid))
+        sides = closed(grid, context.walls)
+        if self.of != (grid.dx, grid.nx, grid.ny, *sides):
+            self.space, self.of = smoothed(spaces(grid, sides)), (grid.dx, grid.nx, grid.ny, *sides)
         void = p.history[:, material.memory.index("void")] if "void" in material.memory else 0.0
         over = np.maximum(excess(grid, self.space, p.x, p.V0 * p.J * np.exp(-void)) - slack(grid, p.V0), 0.0)
         if not over.any():

@@ -143,6 +143,10 @@ class FrictionalWalls(Walls):
             cutoff,
         )  # fmt: skip
 
+    def closes(self, nodes: Ints, axis: int) -> bool:
+        """Whether no body passes these nodes along the axis: walls with friction count where nothing touches too."""
+        return bool((self.still.held[nodes, axis] | (self.normal[nodes, axis] != 0)).all())
+
     def in_strain(self) -> tuple[NDArray[np.bool_], Floats, Floats]:
         """Components that have the wall's velocity, that velocity, and its rate, (n,2)."""
         return self.held_in_strain, self.still.value, self.still.rate

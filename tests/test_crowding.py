@@ -12,8 +12,9 @@ from mpm_verify.cases.column.execute import execute, setup
 from mpm_verify.cases.column.measure import Measure
 from mpm_verify.cases.column.run import ColumnRun
 from mpm_verify.solver.basis.cpdi import Cpdi
-from mpm_verify.solver.boundary import box
-from mpm_verify.solver.crowding import NOISE, RATE, SLACK, excess, slack, smoothed, spaces
+from mpm_verify.solver.boundary import Walls, box
+from mpm_verify.solver.crowding import NOISE, RATE, SLACK, Crowding, closed, excess, slack, smoothed, spaces
+from mpm_verify.solver.friction import frictional
 from mpm_verify.solver.layout import rectangle
 from mpm_verify.solver.model import no_load
 from mpm_verify.solver.plugins import MATERIALS, create
@@ -24,19 +25,25 @@ from mpm_verify.solver.step import Model, advance
 DX = 0.1
 
 
-def body(closer: float = 1.0, name: str = "mohr_coulomb:psi=0,void=1", ppc: int = 9) -> Model:
-    """Sand that fills a grid of 12 x 12 cells, its particles `closer` together towards the lower left corner."""
-    material: Any = create(MATERIALS, name)
-    grid = Grid(DX, np.zeros(2), np.array([1.2, 1.2]))
-    p = Cpdi().populate(rectangle(np.zeros(2), np.array([1.2, 1.2]), DX, ppc), material.rho0)
+def body(closer: float = 1.0, ppc: int = 9, dx: float = DX, beyond: int = 0) -> Model:
+    """Sand that fills 12 x 12 cells and some `beyond`, particles `closer` together towards the lower left corner."""
+    material: Any = create(MATERIALS, "mohr_coulomb:psi=0,void=1")
+    corners = np.zeros(2), np.full(2, 12 * dx)
+    grid, more = Grid(dx, *corners), beyond * dx
+    p = Cpdi().populate(rectangle(corners[0] - more, corners[1] + more, dx, ppc), material.rho0)
     p.x *= closer
     return Model(grid, p, Cpdi(), material, box(grid, "roller"), 1e-4, pooling=Pooling())
 
 
 def over(m: Model) -> Floats:
     """Excess of claims at nodes inside the domain, (13,13)."""
+    return everywhere(m)[2:-2, 2:-2]
+
+
+def everywhere(m: Model) -> Floats:
+    """Excess of claims at all nodes, (17,17)."""
     p, g = m.particles, m.grid
-    found: Floats = excess(g, smoothed(spaces(g)), p.x, p.V0 * p.J).reshape(g.nx, g.ny)[2:-2, 2:-2]
+    found: Floats = excess(g, smoothed(spaces(g, closed(g, m.walls))), p.x, p.V0 * p.J).reshape(g.nx, g.ny)
     return found
 
 
@@ -49,6 +56,50 @@ def test_a_regular_layout_claims_the_space_that_there_is(ppc: int) -> None:
     m.particles.F *= np.sqrt(1.1)
     np.testing.assert_allclose(over(m), 0.1, atol=1e-12)
     assert over(body(1.1, ppc=ppc))[:7, :7].max() < -0.1
+
+
+def test_beyond_a_free_side_there_is_space() -> None:
+    """Sand that fills the ghost cells too, and sand across one side, are not crowded; to the last bit it stays."""
+    m = body(beyond=2)
+    m.walls = box(m.grid, "free")
+    np.testing.assert_allclose(everywhere(m), 0.0, atol=1e-12)
+    for side in range(4):
+        m = body()
+        kinds: Any = ["roller"] * 4
+        kinds[side] = "free"
+        m.particles.x[:, side // 2] += DX if side % 2 else -DX
+        assert everywhere(m).max() > 0.3  # into a wall
+        m.walls = box(m.grid, tuple(kinds))
+        assert everywhere(m).max() < 1e-12
+        F = m.particles.F.copy()
+        relieved(m, 1)
+        np.testing.assert_array_equal(m.particles.F, F)
+        m.particles.F *= np.sqrt(1.1)
+        assert everywhere(m).max() == pytest.approx(0.1, abs=1e-12)
+
+
+def test_what_stands_on_a_side() -> None:
+    """A wall with friction does before anything touches it, half a wall does not."""
+    grid = body().grid
+    assert closed(grid, frictional(grid, (0.3, "free", 0.3, "fixed"))) == (True, False, True, True)
+    half: Walls = box(grid, ("roller", "roller", "fixed", "free"))
+    assert closed(grid, half) == (True, True, True, False)
+    half.held[(grid.nodes[:, 1] > 1.19) & (grid.nodes[:, 0] < 0.6), 1] = True
+    assert closed(grid, half) == (True, True, True, False)
+    half.held[(grid.nodes[:, 1] > 1.19), 1] = True
+    assert closed(grid, half) == (True, True, True, True)
+
+
+def test_space_follows_the_grid_and_its_sides() -> None:
+    """Of another cell, and of other walls, it is another one, though its shape is the same."""
+    crowding = Crowding()
+    for dx, kind, corner in ((0.1, "roller", 0.25), (0.2, "roller", 0.25), (0.2, "free", 1.0), (0.1, "free", 1.0)):
+        m = body(dx=dx)
+        m.walls = box(m.grid, kind)  # type: ignore[arg-type]
+        crowding.relieve(m)
+        np.testing.assert_array_equal(crowding.space, smoothed(spaces(m.grid, closed(m.grid, m.walls))))
+        assert spaces(m.grid, closed(m.grid, m.walls))[2, 2] == pytest.approx(corner * dx**2)
+        assert crowding.strain == 0.0
 
 
 def relieved(m: Model, times: int) -> list[float]:
