@@ -8,9 +8,10 @@ that with 9 particles per cell a heap is 8 % too small for its material. The spa
 
 Both sums are smoothed by (1 2 1)/4 along both axes, twice: after a collapse particles lie in their cells as if by
 chance, and phi scatters by 0.2 to 0.3 between nodes. Where it is above 1 + slack, ln J of the particles there falls by
-RATE (phi - 1 - slack) every so many steps: a strain that the material sees as any other. It closes voids, then builds
-up pressure; that drives the particles apart, and they come back to the volume that they had with the space for it.
-Claims below the space mean nothing, as at a surface or in flight. So noise is rectified; therefore smoothing and slack.
+RATE (phi - 1 - slack), each time that pooling asks (every sixteenth step, before it pools): a strain that the material
+sees as any other. It closes voids, then builds up pressure; that drives the particles apart, and they come back to the
+volume that they had with the space for it. Claims below the space mean nothing, as at a surface or in flight. So noise
+is rectified; therefore smoothing and slack.
 Without slack the sand of `verify box`, which is sound, ends with K = 0.9 instead of 0.5, by a strain of 0.7 %. Of n
 particles per cell that lie by chance smoothed claims scatter by 0.26/sqrt(n); the slack is a third of it, or SLACK.
 

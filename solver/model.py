@@ -108,7 +108,7 @@ class Model(Context):
     surface
         Edge of the body that is pulled or driven, None for none.
     pooling
-        Pooling of void strain and compression after each step, None for none.
+        Pooling after each step, with the relief of what is crowded, see solver/pooling.py; None for none.
     steps
         Steps done; `time` is steps * dt, the time level of x, F and sigma. In a staggered run v has the level dt/2
         before it.

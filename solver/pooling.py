@@ -18,7 +18,8 @@ Between two such steps a wave crosses some cells at usual Courant numbers, so th
 void strain spreads faster than sand can follow: every other step the sand of `verify box` stands 1.6 % higher.
 In these steps, and half-way between them in the cells of the grid, compressed particles take a fraction MIXED of the
 mean stress for as much of their own. Else what they differ by without being open grows as w does: single ones carry
-twelve times the mean of the lowest rows. Then what is crowded is relieved, see solver/crowding.py.
+twelve times the mean of the lowest rows. Half-way, every APART steps, and before the cells are pooled, what is crowded
+is relieved, see solver/crowding.py.
 
 New stresses are sums of old ones with weights that add up to 1 at most, so they stay in any strength that is convex
 and holds no stress at all, with cohesion too; and elastic energy, which is convex, can only fall. With moduli that
@@ -154,14 +155,14 @@ def settle(volume, scale, stored, constants, cell, V0, F_old, sigma, F, history,
 
 @dataclass
 class Pooling:
-    """Pooling of void strain and compression in each cell.
+    """Pooling of void strain, compression and stress in each cell, and relief of what is crowded.
 
     Attributes
     ----------
     taken
         Elastic energy that it has taken so far, per thickness.
     crowding
-        Relief of crowded particles, half-way between two steps around the nodes.
+        Relief of crowded particles, half-way between two steps around the nodes and before the cells are pooled.
     """
 
     taken: float = 0.0
@@ -179,7 +180,7 @@ class Pooling:
         self.compression = material.compression()
 
     def pool(self, context: Context) -> None:
-        """Pool the cells of a body whose material has just been updated."""
+        """Relieve what is crowded, if it is its step, then pool the cells of a body whose material was just updated."""
         p, grid, material, own = context.particles, context.grid, context.material, self.compression
         assert own is not None
         assert isinstance(material, RateMaterial)

@@ -174,6 +174,32 @@ def test_pooling_relieves_now_and_then() -> None:
         assert (m.pooling.crowding.strain < 0) == (steps % APART == APART // 2 - 1)
 
 
+def test_what_is_crowded_is_relieved_before_the_cells_are_pooled(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Relief finds particles as the material left them, half of them open, and pooling finds them relieved."""
+    m, found = body(), []
+    relieve = Crowding.relieve
+
+    def seen(self: Crowding, context: Any) -> None:
+        found.append(m.particles.F.copy())
+        relieve(self, context)
+        found.append(m.particles.F.copy())
+
+    monkeypatch.setattr(Crowding, "relieve", seen)
+    p = m.particles
+    p.F *= np.sqrt(1.1)
+    p.F_old[:] = p.F.reshape(-1, 4)
+    p.history[::2, 2] = 0.05
+    p.sigma[1::2, :3] = -1000.0
+    begun = p.F.copy()
+    m.steps = APART // 2 - 1
+    assert m.pooling
+    m.pooling.pool(m)
+    np.testing.assert_array_equal(found[0], begun)
+    assert (found[1] < found[0])[:, 0, 0].all()
+    assert m.pooling.taken > 0
+    assert (p.F != found[1]).any()
+
+
 def test_sound_sand_is_left_alone() -> None:
     """Shifted by 0.3 spacings and landing from a fall: nothing is given to it."""
     m, _ = box_of(Run(cells=4, aspect=3.5, drop=0.005, duration=0.1, pooling=True))

@@ -22,7 +22,7 @@ class Run(RunRecord):
     ppc: int = axis(9, "Particles per cell, square numbers.")
     transfer: str = axis("flip", "Transfer between particles and grid.", TRANSFERS)
     smoothing: str = axis("none", "none, or smoothing of rates and stresses.", SMOOTHINGS)
-    pooling: bool = axis(True, "Pool void strain and compression in each cell after each step.")
+    pooling: bool = axis(True, "Pool void strain, compression and stress in cells; relieve crowded particles.")
     damping: float = axis(0.05, "Fraction of the unbalanced force at each node.")
     drop: float = axis(0.08, "Height of the fall, m.")
     jitter: float = axis(0.3, "Largest shift of a particle along each axis, in spacings.")

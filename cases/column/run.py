@@ -38,7 +38,7 @@ class ColumnRun(RunRecord):
     damping_kind: str = axis("local", "local (component by component) or objective.", choices=KINDS)
     smoothing: str = axis("none", "none, or smoothing of rates and stresses.", SMOOTHINGS)
     transfer: str = axis("flip", "Transfer between particles and grid.", TRANSFERS)
-    pooling: bool = axis(False, "Pool void strain and compression in each cell after each step.")
+    pooling: bool = axis(False, "Pool void strain, compression and stress in cells; relieve crowded particles.")
     deformation: str = axis(
         "exponential", "Update of F: exponential, or linear as printed.", choices=("exponential", "linear")
     )
