@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mpm_verify.cases.column.heap import at_wall, by_volume, connected, levelled, quantile, surface
+from mpm_verify.cases.column.heap import at_wall, by_volume, connected, crowding, levelled, quantile, surface
 from mpm_verify.cases.column.run import ColumnRun
 from mpm_verify.solver.basis.mpm import Mpm
 from mpm_verify.solver.boundary import box
@@ -64,6 +64,31 @@ def test_a_heap_that_ends_within_a_strip_and_one_that_is_crowded() -> None:
     x, V = triangle(14, 9, (0.0, 0.0))
     assert area(x, 1.3 * V) == pytest.approx(area(x, V), rel=0.005)
     assert by_volume(x, 1.3 * V, STRIP, STRIPS).sum() * STRIP == pytest.approx(1.3 * V.sum(), rel=1e-12)
+
+
+@pytest.mark.parametrize("made", [column, triangle])
+@pytest.mark.parametrize(("cells", "ppc"), RESOLUTIONS)
+def test_crowding_is_volume_over_space(cells: int, ppc: int, made: Any) -> None:
+    """Of a rectangle and a triangle 1, with 1.3 times the volume 1.3, with half the height 2; a mean over squares."""
+    x, V = made(cells, ppc, (0.0, 0.0))
+    strip = ColumnRun(cells=cells).strip
+    assert crowding(x, V, strip) == pytest.approx(1, abs=1e-12)
+    assert crowding(x, 1.3 * V, strip) == pytest.approx(1.3, abs=1e-12)
+    assert crowding(x * [1.0, 0.5], V, strip) == pytest.approx(2, abs=1e-12)
+    if made is column:
+        V[x[:, 1] < strip] *= 2  # of the lowest of the rows of squares, all but the uppermost of which count
+        rows = 7 * WIDTH / strip - 1
+        assert crowding(x, V, strip) == pytest.approx(1 + 1 / rows, abs=1e-12)
+
+
+def test_crowding_of_what_has_no_inside() -> None:
+    """A single row of squares has no square with another above it, and so no number; a hollow is not counted."""
+    x, V = column(14, 9, (0.0, 0.0), 10.0, 1 / 7)
+    assert np.isnan(crowding(x, V, STRIP))
+    x, V = column(14, 9, (0.0, 0.0))
+    whole = crowding(x, V, STRIP)
+    kept = (x[:, 1] < 10 * STRIP) | (x[:, 1] > 12 * STRIP)
+    assert crowding(x[kept], V[kept], STRIP) == pytest.approx(whole, abs=1e-12)
 
 
 @pytest.mark.parametrize("shift", SHIFTS, ids=str)
