@@ -111,6 +111,7 @@ def rounded_to_failure(patch: Patch) -> None:
 MATERIAL: dict[str, tuple[Plant, tuple[str, ...], str]] = {
     "no stress of equal stretches": (no_number, ("stress_even",), "hencky"),
     "void closes with more": (closed_late, ("void_contact",), "mohr_coulomb"),
+    "void with cohesion closes with more": (closed_late, ("void_contact",), "mohr_coulomb:c=1000"),
     "flow 1 % off": (parameters(MohrCoulomb, psi=1.01), ("return_mapping",), "mohr_coulomb"),
     "half of gamma_p in the kernel": (half_in_memory, ("return_memory",), "mohr_coulomb"),
     "bulk modulus 0.1 % high": (parameters(Ubcsand, KBe=1.001), ("secant",), "ubcsand"),

@@ -25,8 +25,8 @@ class ColumnRun(RunRecord):
     `mu`: see solver/friction.py; `stops`: see solver.boundary.Walls; `offset` shifts the particles in their cells, by
     fractions of their spacing; `mirror`
     puts the wall to the right. What keeps the column alive: `limit` of the half diagonals of CPDI domains, in cells
-    (inf: none; never below what a particle begins with), `void`-strain memory of materials that have one and no
-    cohesion, and the exponential `deformation`. `pooling`: solver/pooling.py.
+    (inf: none; never below what a particle begins with), `void`-strain memory of materials that have one and part
+    free of stress, and the exponential `deformation`. `pooling`: solver/pooling.py.
     Raises ValueError with one line for what no column has.
     """
 

@@ -1,6 +1,5 @@
 """Memory of a soil: sums go on from what they were, plastic strain is what elasticity leaves, tension and voids."""
 
-from dataclasses import replace
 from functools import partial
 from math import inf, radians, tan
 
@@ -21,6 +20,7 @@ from mpm_verify.mms.constitutive.driver import (
 from mpm_verify.mms.constitutive.stress import CONFINED, POINTS, confined
 from mpm_verify.mms.constitutive.tested import FAILED, Part, Reason, Tested, attempt, bound, not_asked, off
 from mpm_verify.solver.state import Floats
+from mpm_verify.solver.voids import remembering
 
 STEPS = 3
 BEFORE = 0.017  # what a sum holds before the path
@@ -146,11 +146,12 @@ def cut_off(subject: Subject) -> Tested:
 def contact(subject: Subject) -> Tested:
     """Void strain: a step that closes it is the part of the step behind contact; one that does not leaves no stress."""
     name, material = "void_contact", subject.material
-    if "void" not in material.memory or material.cohesion:
+    material = remembering(material)
+    if not getattr(material, "void", 0.0):
         return not_asked(name, Part.HISTORY, Reason.NO_VOID)
     if material.rate == "truesdell":
         return not_asked(name, Part.HISTORY, Reason.STRETCHED)
-    material, sigma, D = replace(material, void=1.0), np.zeros((POINTS, 4)), 10 * strain(subject)
+    sigma, D = np.zeros((POINTS, 4)), 10 * strain(subject)
     volume, column = np.trace(D, axis1=1, axis2=2), material.memory.index("void")
     void = np.abs(volume) * (1 + 0.7 * random(POINTS, seed=13))  # half of those that are compressed touch
     touches = volume < -void

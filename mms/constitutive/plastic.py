@@ -21,6 +21,7 @@ from mpm_verify.mms.constitutive.stress import CONFINED
 from mpm_verify.mms.constitutive.surfaces import Surfaces, known_surfaces, surfaces
 from mpm_verify.mms.constitutive.tested import Part, Reason, Tested, attempt, bound, not_asked, off
 from mpm_verify.solver.state import Floats
+from mpm_verify.solver.voids import parts_free
 
 COUNT = 96  # states of random axes, a third of them on a surface
 SIZES = (0.0, 0.3, 3.0, 30.0)  # of the elastic stress increments, over the confining stress
@@ -69,8 +70,8 @@ def variants(subject: Subject) -> Iterator[tuple[str, Any]]:
         told = [*(f"{name}={value:g}" for name, value in other.items()), *([cone] if cone else [])]
         scaled = {name: value * unit if name in ("c", "sigma_t") else value for name, value in other.items()}
         more: dict[str, Any] = {"cone": cone} if cone else {}
-        if other.get("c") and hasattr(material, "void"):
-            more["void"] = 0.0  # what has cohesion does not part
+        if hasattr(material, "void") and not parts_free(other.get("c", 0.0), other.get("sigma_t")):
+            more["void"] = 0.0
         yield ",".join(told) or "as given", replace(material, **scaled, **more)
 
 

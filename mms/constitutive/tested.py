@@ -66,7 +66,7 @@ class Reason(StrEnum):
     IN_SPACE = "in_space"  # a yield surface of all three principal stresses
     NO_SURFACES = "no_surfaces"  # perfectly plastic with surfaces that the battery does not know, or not so
     NO_HARDENING = "no_hardening"  # no sand that hardens
-    NO_VOID = "no_void"  # no void strain, or cohesion
+    NO_VOID = "no_void"  # no void strain, or it parts with a stress
     OPENED = "opened"  # strain that opens and closes voids is neither elastic nor plastic
     NO_SUMS = "no_sums"  # no memory that is a sum
     OWN_AXES = "own_axes"  # the material tells its axes apart

@@ -154,7 +154,7 @@ REASONS = {
     Reason.IN_SPACE: "the yield surface is one of all three principal stresses",
     Reason.NO_SURFACES: "its yield surfaces stand in no table here",
     Reason.NO_HARDENING: "the material is not the sand whose hardening is known here",
-    Reason.NO_VOID: "the material has no void strain, or has cohesion",
+    Reason.NO_VOID: "the material has no void strain, or holds tension",
     Reason.OPENED: "strain that opens and closes voids is neither elastic nor plastic",
     Reason.NO_SUMS: "the material keeps no such sum, or its moduli change on the way",
     Reason.OWN_AXES: "the material tells its own axes apart",
