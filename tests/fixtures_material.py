@@ -48,6 +48,16 @@ def parameters(kind: Any, **factors: float) -> Plant:
     return plant
 
 
+def derived(kind: Any, name: str, factor: float) -> Plant:
+    """Property that a class makes of its parameters, by a factor."""
+
+    def plant(patch: Patch) -> None:
+        original = getattr(kind, name).fget
+        patch.setattr(kind, name, property(lambda self: factor * original(self)))
+
+    return plant
+
+
 def no_number(patch: Patch) -> None:
     """Hencky solid without a stress where its stretches are the same: 0/0."""
     original = hencky.stress
@@ -117,6 +127,9 @@ MATERIAL: dict[str, tuple[Plant, tuple[str, ...], str]] = {
     "bulk modulus 0.1 % high": (parameters(Ubcsand, KBe=1.001), ("secant",), "ubcsand"),
     "hyperbola 0.1 % off": (parameters(Ubcsand, Rf=0.999), ("hardening",), "ubcsand"),
     "constant volume 0.1 % off": (parameters(Ubcsand, phi_pt=0.999), ("flow_rule",), "ubcsand"),
+    "property eta_f 0.1 % low": (derived(Ubcsand, "eta_f", 0.999), ("hardening", "flow_rule"), "ubcsand"),
+    "property eta_cv 0.1 % low": (derived(Ubcsand, "eta_cv", 0.999), ("flow_rule",), "ubcsand"),
+    "property shift 0.1 % low": (derived(Ubcsand, "shift", 0.999), ("hardening", "flow_rule"), "ubcsand:c=1000"),
     "neutral loading fails": (rounded_to_failure, ("neutral",), "ubcsand"),
     "work 0.1 % high": (around(RateMaterial, "update", more_work), ("work",), "hypoelastic"),
     "smoothing takes all": (lambda p: p.setattr(Smoothing, "check", lambda self, material: None),

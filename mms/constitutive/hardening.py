@@ -7,6 +7,7 @@ over it. They are implicit: passes that seek their solution leave a power of the
 
 from dataclasses import dataclass
 from functools import partial
+from math import radians, sin, tan
 from typing import Any
 
 import numpy as np
@@ -28,6 +29,21 @@ def tests(subject: Subject) -> list[Tested]:
         return [not_asked(name, part, Reason.NO_HARDENING) for name, part in PARTS.items()]
     found = attempt("secant", Part.STRESS, partial(steps, subject))
     return found + attempt("neutral", Part.STRESS, partial(neutral, subject))
+
+
+def eta_f(sand: Any) -> float:
+    """Failure ratio sin phi_f, written out: what the class under test makes of its angles is tested too."""
+    return sin(radians(sand.phi_f))
+
+
+def eta_cv(sand: Any) -> float:
+    """Ratio of constant volume, sin phi_pt."""
+    return sin(radians(sand.phi_pt))
+
+
+def shift(sand: Any) -> float:
+    """Shift c cot phi_f of s, a stress."""
+    return float(sand.c / tan(radians(sand.phi_f)))
 
 
 @dataclass(frozen=True)
@@ -68,14 +84,14 @@ def steps(subject: Subject) -> list[Tested]:
 def states(sand: Any) -> tuple[Point, Floats]:
     """Stresses, memories and strain increments (P,2,2): s from 1/30 to 3 times atmospheric, axes of any direction."""
     s = sand.Pa * 10 ** (-0.5 + random(POINTS, seed=31))
-    eta = sand.eta_f * (0.65 + 0.3 * random(POINTS, seed=32))
-    eta[::4] = sand.eta_f
-    t, angle = eta * (s + sand.shift), 3 * random(POINTS, seed=33)
+    eta = eta_f(sand) * (0.65 + 0.3 * random(POINTS, seed=32))
+    eta[::4] = eta_f(sand)
+    t, angle = eta * (s + shift(sand)), 3 * random(POINTS, seed=33)
     half = t * np.cos(angle)
     sigma = np.stack([half - s, -half - s, -0.8 * s, t * np.sin(angle)], axis=1)
     history = sand.initial(sigma)
-    history[::4, 0] = sand.eta_f
-    history[1::4, 0] = (sand.eta_f + eta[1::4]) / 2
+    history[::4, 0] = eta_f(sand)
+    history[1::4, 0] = (eta_f(sand) + eta[1::4]) / 2
     size = SHORT * s / (sand.KGe * sand.Pa * (s / sand.Pa) ** sand.ne)
     return Point(sigma, history), symmetric(size[:, None] * random(POINTS, 3, seed=34))
 
@@ -84,14 +100,14 @@ def neutral(subject: Subject) -> Tested:
     """Steps of no strain, and of strains that are round-off, from many states on the branch: nothing changes."""
     sand = subject.material
     s, eta, angle = (random(MANY, seed=seed) for seed in (35, 36, 37))
-    s, eta = sand.Pa * 10 ** (1.5 * s - 1), sand.eta_f * np.abs(eta)
-    t = eta * (s + sand.shift)
+    s, eta = sand.Pa * 10 ** (1.5 * s - 1), eta_f(sand) * np.abs(eta)
+    t = eta * (s + shift(sand))
     half = t * np.cos(3 * angle)
     sigma = np.stack([half - s, -half - s, -0.8 * s, t * np.sin(3 * angle)], axis=1)
     begun, worst = sand.initial(sigma), 0.0
     for size in (0.0, 2.0**-64):
         end = responded(sand, sigma, symmetric(size * random(MANY, 3, seed=38)), begun)
-        moved = (end.sigma - sigma) / (s + sand.shift)[:, None]
+        moved = (end.sigma - sigma) / (s + shift(sand))[:, None]
         worst = max(worst, off(moved, 0.0, 1.0), apart(sand, end.history, begun, sand.Pa))
     return Tested("neutral", worst, bound(64), Part.STRESS)
 
@@ -117,20 +133,20 @@ def elastic(
 
 def hyperbola(sand: Any, eta: Floats) -> Floats:
     """Slip q that mobilises eta from nothing, times the stiffness: q = eta / (1 - Rf eta / eta_f)."""
-    q: Floats = eta / (1 - sand.Rf * eta / sand.eta_f)
+    q: Floats = eta / (1 - sand.Rf * eta / eta_f(sand))
     return q
 
 
 def hardened(sand: Any, after: Ends, mean: Floats, first: Floats, last: Floats, slip: Floats) -> list[Floats]:
     """Distances from the hyperbola of what slips below failure, from t = eta s' there, and from t <= eta s'."""
     at = np.clip(mean / sand.Pa, sand.s_min, None)
-    stiff = sand.KGp * sand.Pa * at**sand.np / (mean + sand.shift)
+    stiff = sand.KGp * sand.Pa * at**sand.np / (mean + shift(sand))
     q = hyperbola(sand, last) - hyperbola(sand, first) - stiff * slip
-    excess = (after.t - last * (after.s + sand.shift)) / mean
+    excess = (after.t - last * (after.s + shift(sand))) / mean
     return [
-        np.where(last >= sand.eta_f, np.maximum(q, 0.0), q),
+        np.where(last >= eta_f(sand), np.maximum(q, 0.0), q),
         np.where(slip > 0, excess, np.maximum(excess, 0.0)),
-        np.where(slip > 0, np.maximum(last - sand.eta_f, 0.0), last - first),
+        np.where(slip > 0, np.maximum(last - eta_f(sand), 0.0), last - first),
     ]
 
 
@@ -141,8 +157,8 @@ def flow(
     q0, q1 = hyperbola(sand, first), hyperbola(sand, last)
     points, weights = POINTS_OF_GAUSS
     q = (q0 + q1)[:, None] / 2 + (q1 - q0)[:, None] / 2 * points
-    eta = (q / (1 + sand.Rf / sand.eta_f * q)) @ weights / 2
+    eta = (q / (1 + sand.Rf / eta_f(sand) * q)) @ weights / 2
     return [
-        (opened - (eta - sand.eta_cv) * slip) / SHORT,
-        (work - ((mean + sand.shift) * eta * slip - mean * (eta - sand.eta_cv) * slip)) / mean / SHORT,
+        (opened - (eta - eta_cv(sand)) * slip) / SHORT,
+        (work - ((mean + shift(sand)) * eta * slip - mean * (eta - eta_cv(sand)) * slip)) / mean / SHORT,
     ]
