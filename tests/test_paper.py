@@ -10,6 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import fixtures_paper
 import pytest
 
 from mpm_verify.reports.export import paper as writing
@@ -19,7 +20,6 @@ from mpm_verify.reports.paper.ledger import claims, entry, ledger, readings, usu
 from mpm_verify.reports.paper.records import Answer, Chosen, Claim, Entry, NotStoredError, Status
 from mpm_verify.reports.paper.rules import RULES
 from mpm_verify.reports.paper.studies import chosen, studies
-from tests import fixtures_paper
 
 
 @pytest.fixture(scope="module")
