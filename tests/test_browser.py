@@ -382,7 +382,7 @@ def column(folder: Path) -> Path:
 EXAMINED: dict[str, tuple[Callable[[Path], Path], int]] = {
     "objectivity": (objectivity, 8),
     "material": (material, 9),
-    "column": (column, 10),
+    "column": (column, 11),
 }
 
 

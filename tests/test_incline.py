@@ -168,12 +168,12 @@ for problem, cells, method in (("sliding_block", 4, "cpdi"), ("rolling_cylinder"
 @pytest.mark.parametrize(
     ("name", "seen"),
     [
-        ("friction-sticks-for-good", ["", "sliding_block travel excess_friction", "rolling_cylinder"]),
-        ("friction-touches-once", ["", "sliding_block", "rolling_cylinder gap slip"]),
+        ("friction-sticks-for-good", ["friction_course", "sliding_block travel excess_friction", "rolling_cylinder"]),
+        ("friction-touches-once", ["friction_course", "sliding_block", "rolling_cylinder gap slip"]),
     ],
 )
 def test_a_defect_that_only_an_incline_sees(name: str, seen: list[str], tmp_path: Path) -> None:
-    """Mistakes in what is kept from step to step: no test of a step or two sees them, and each problem sees one."""
+    """Mistakes in what is kept from step to step: of tests of a few steps only the course sees them, and each problem sees one."""
     copy = copied(tmp_path)
     ways = {**os.environ, "PYTHONPATH": f"{copy}{os.pathsep}{Path(__file__).parent}"}
     with Planted(copy, defects()[name]):

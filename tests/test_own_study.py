@@ -77,7 +77,7 @@ def test_what_is_expected_of_a_file(tmp_path: Path) -> None:
 def test_the_example_of_the_readme_passes(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """It names no order; on screen it has the name of its file, and its path stands on the page once."""
+    """It names no order; on screen it has the name of its file, and its path stands on the page once, and in the commands of its runs."""
     out = tmp_path / "out"
     words = ("mms", "--quick", "--page", "--solution", EXAMPLE, "--jobs", "1", "--out", str(out))
     code, said, err = verify(monkeypatch, capsys, *words)
@@ -85,7 +85,8 @@ def test_the_example_of_the_readme_passes(
     assert "PASS  cpdi, 4 per cell, u in rms, order 2 expected" in said
     assert "manufactured solution own_solution\n" in said
     page = (out / "report.html").read_text()
-    assert page.count(str(Path(EXAMPLE).resolve())) == 1
+    runs = 6  # each has a card with its command
+    assert page.count(str(Path(EXAMPLE).resolve())) == 1 + runs
     assert "declared by the method" in page
 
 
