@@ -173,7 +173,7 @@ for problem, cells, method in (("sliding_block", 4, "cpdi"), ("rolling_cylinder"
     ],
 )
 def test_a_defect_that_only_an_incline_sees(name: str, seen: list[str], tmp_path: Path) -> None:
-    """Mistakes in what is kept from step to step: of tests of a few steps only the course sees them, and each problem sees one."""
+    """Mistakes in what is kept from step to step: the course of a few steps sees them, and each problem sees one."""
     copy = copied(tmp_path)
     ways = {**os.environ, "PYTHONPATH": f"{copy}{os.pathsep}{Path(__file__).parent}"}
     with Planted(copy, defects()[name]):

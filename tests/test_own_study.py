@@ -77,7 +77,7 @@ def test_what_is_expected_of_a_file(tmp_path: Path) -> None:
 def test_the_example_of_the_readme_passes(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """It names no order; on screen it has the name of its file, and its path stands on the page once, and in the commands of its runs."""
+    """It names no order; it has the name of its file, and its path stands on the page once, and with each run."""
     out = tmp_path / "out"
     words = ("mms", "--quick", "--page", "--solution", EXAMPLE, "--jobs", "1", "--out", str(out))
     code, said, err = verify(monkeypatch, capsys, *words)
