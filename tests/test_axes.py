@@ -328,7 +328,7 @@ def test_seven_methods_stay_readable(tmp_path: Path) -> None:
     names = ("mpm", "gimp", "cpgimp", "cpdi", "cpdi2", "bspline2", "bspline3")
     runs = tuple(replace(BASE, method=m, ppc=p, cells=n) for m in names for p in (4, 9) for n in (8, 16, 32))
     text = rendered(tmp_path, runs, lambda run: run.cells**-2.0)
-    assert "Error of u in rms against the particles per cell" in text
+    assert "Error of u in rms against the particles per cell: 42 rows" in text
     looks = {(look(names, m, p).colour, look(names, m, p).marker) for m in names for p in (4, 9)}
     assert len(looks) == 7
     assert len({look(names, "mpm", p).line for p in (1, 4, 9, 16)}) == 4
