@@ -76,11 +76,9 @@ def show(title: str, result: "Audit") -> None:
     from rich.text import Text
 
     from mpm_verify.reports.sentences import blind_spots as words
-    from mpm_verify.verify.terminal.table import Listened
+    from mpm_verify.verify.terminal.table import listened
 
-    out = Listened(highlight=False, soft_wrap=False)
-    if not out.is_terminal:
-        out.width = max(out.width, 100)
+    out = listened()
     out.print(Text(f"\n{title}", "bold"))
     for heading, style, spots in (
         ("cannot see", "bold yellow", result.blind),

@@ -64,16 +64,13 @@ def show(found: "Sequence[Change]") -> None:
     """Print a table of changes, the first where they are many."""
     if not found:
         return
-    from rich.table import Table
     from rich.text import Text
 
     from mpm_verify.reports import words
-    from mpm_verify.verify.terminal.table import Listened
+    from mpm_verify.verify.terminal.table import bare, listened
 
-    out = Listened(highlight=False, soft_wrap=False)
-    if not out.is_terminal:
-        out.width = max(out.width, 160)
-    table = Table(box=None, pad_edge=False, header_style="dim")
+    out = listened(160)
+    table = bare()
     for name in ("what", "before", "after", "after / before", "of"):
         table.add_column(name, overflow="fold", justify="left" if name in ("what", "of") else "right")
     for one in found[:MOST]:

@@ -68,11 +68,9 @@ def line(entry: "Entry") -> dict[str, object]:
 
 def show(entries: "list[Entry]") -> None:
     """Print a row for each solution and method, the quantities beside each other."""
-    from rich.table import Table
+    from mpm_verify.verify.terminal.table import bare, listened
 
-    from mpm_verify.verify.terminal.table import Listened
-
-    table = Table(box=None, pad_edge=False, header_style="dim")
+    table = bare()
     for name in ("solution", "method", "u", "v", "F", "sigma", "source"):
         table.add_column(name)
     rows: dict[tuple[str, str], list[Entry]] = {}
@@ -85,9 +83,7 @@ def show(entries: "list[Entry]") -> None:
             "" if solution == last else solution, method, *words, quantities[0].expectation.source.partition(";")[0]
         )
         last = solution
-    out = Listened(highlight=False)
-    if not out.is_terminal:
-        out.width = max(out.width, 120)
+    out = listened(120)
     out.print(table)
     out.print(NOTE)
 

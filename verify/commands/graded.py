@@ -80,17 +80,13 @@ def name(plan: "Plan") -> str:
 
 def show(record: "Record", page: Path | None) -> None:
     """Print errors and orders, and what graded and thinned layouts save."""
-    from rich.table import Table
-
     from mpm_verify.reports.components.show_graded import OVERVIEW, WHAT, overview
     from mpm_verify.verify.terminal import table
-    from mpm_verify.verify.terminal.table import Listened
+    from mpm_verify.verify.terminal.table import bare, listened
 
     table.show(record, page)
-    found, out = overview(record), Listened(highlight=False, soft_wrap=False)
-    if not out.is_terminal:
-        out.width = max(out.width, 110)
-    drawn = Table(box=None, pad_edge=False, header_style="dim")
+    found, out = overview(record), listened(110)
+    drawn = bare()
     for column in OVERVIEW:
         drawn.add_column(column, justify="left" if column in OVERVIEW[:4] else "right")
     for row in found.rows:

@@ -37,15 +37,12 @@ def index(
 
 def show(found: "list[Entry]", path: Path) -> None:
     """Print a row for each study."""
-    from rich.table import Table
     from rich.text import Text
 
-    from mpm_verify.verify.terminal.table import STYLES, Listened
+    from mpm_verify.verify.terminal.table import STYLES, bare, listened
 
-    out = Listened(highlight=False, soft_wrap=False)
-    if not out.is_terminal:
-        out.width = max(out.width, 120)
-    table = Table(box=None, pad_edge=False, header_style="dim")
+    out = listened(120)
+    table = bare()
     for name in ("", "study", "what came out", "written (UTC)"):
         table.add_column(name, overflow="fold")
     for one in found:

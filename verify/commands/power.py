@@ -90,11 +90,9 @@ def show(rows: "Sequence[Row]", out: Path, json_output: bool) -> None:
     if json_output:
         typer.echo(json.dumps(document(rows), indent=1, ensure_ascii=False))
         return
-    from mpm_verify.verify.terminal.table import Listened
+    from mpm_verify.verify.terminal.table import listened
 
-    console = Listened(highlight=False, soft_wrap=False)
-    if not console.is_terminal:
-        console.width = max(console.width, 100)
+    console = listened()
     for levels in dict.fromkeys(row.levels for row in rows):
         console.print(f"\n[bold]{words.levels(levels)}: PASS / FAIL / INCONCLUSIVE in % by scatter[/bold]")
         console.print(table([row for row in rows if row.levels == levels]))
@@ -140,9 +138,9 @@ def table(rows: "Sequence[Row]") -> Any:
 
 def plain(head: "Sequence[str]", lines: "Sequence[Sequence[str]]", texts: int) -> Any:
     """Table for a terminal: `texts` columns of text, then numbers."""
-    from rich.table import Table
+    from mpm_verify.verify.terminal.table import bare
 
-    found = Table(box=None, pad_edge=False, header_style="dim")
+    found = bare()
     for k, name in enumerate(head):
         found.add_column(name, justify="left" if k < texts else "right")
     for line in lines:

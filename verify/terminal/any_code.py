@@ -12,9 +12,7 @@ def show(record: Record, page: Path | None) -> None:
     from mpm_verify.reports.sentences import any_code
     from mpm_verify.verify.terminal import table
 
-    out = table.Listened(highlight=False, soft_wrap=False)
-    if not out.is_terminal:
-        out.width = max(out.width, 100)
+    out = table.listened()
     table.show(record, None, out)
     for finding in record.findings:
         if not finding.counts:

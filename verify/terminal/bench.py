@@ -10,15 +10,11 @@ from mpm_verify.verify.terminal import checks
 
 def show(record: Record, page: Path | None) -> None:
     """Print the speeds and the checks."""
-    from rich.table import Table
-
-    from mpm_verify.verify.terminal.table import Listened
+    from mpm_verify.verify.terminal.table import bare, listened
 
     if rows := bench.rows(record):
-        out = Listened(highlight=False, soft_wrap=False)
-        if not out.is_terminal:
-            out.width = max(out.width, 100)
-        table = Table(box=None, pad_edge=False, header_style="dim")
+        out = listened()
+        table = bare()
         for name in bench.head(rows):
             table.add_column(name, justify="left" if name in ("method", *bench.more(rows)) else "right")
         for row in rows:

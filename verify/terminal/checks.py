@@ -17,17 +17,14 @@ def show(record: Record, page: Path | None, lead: str = "", titled: bool = True)
     The title of the study stands before, if it is `titled`.
     """
     every = record.analysis.checks
-    from rich.table import Table
     from rich.text import Text
 
     from mpm_verify.verify.terminal import logs
-    from mpm_verify.verify.terminal.table import STYLES, Listened, where
+    from mpm_verify.verify.terminal.table import STYLES, bare, listened, where
 
-    out = Listened(highlight=False, soft_wrap=False)
-    if not out.is_terminal:
-        out.width = max(out.width, 100)
+    out = listened()
     out.print(Text(f"\n{record.study.title}" if titled else "", "bold"))
-    table = Table(box=None, pad_edge=False, header_style="dim")
+    table = bare()
     for name in ("", "part", "checks", "pass", "closest to its bound"):
         table.add_column(name, justify="right" if name in ("checks", "pass") else "left")
     for group in dict.fromkeys(check.group for check in every):

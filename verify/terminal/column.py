@@ -7,20 +7,17 @@ from mpm_verify.reports.frames import Record
 
 def show(record: Record, page: Path | None) -> None:
     """Print the runs, the paper's sentences, and the checks."""
-    from rich.table import Table
     from rich.text import Text
 
     from mpm_verify.reports.pages.column import numbers
     from mpm_verify.reports.sentences import column as words
     from mpm_verify.reports.sentences.remarks import lead
     from mpm_verify.verify.terminal.checks import show as checks
-    from mpm_verify.verify.terminal.table import Listened
+    from mpm_verify.verify.terminal.table import bare, listened
 
     found = record.analysis.more
-    out = Listened(highlight=False, soft_wrap=False)
-    if not out.is_terminal:
-        out.width = max(out.width, 100)
-    table = Table(box=None, pad_edge=False, header_style="dim")
+    out = listened()
+    table = bare()
     for name in ("run", "front 99 %", "99.9 %", "toe", "height", "by fit", "rest", "falls", "area", ""):
         table.add_column(name, justify="left" if name in ("run", "") else "right")
     for run in found.study.runs:

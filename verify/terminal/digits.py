@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-from rich.table import Table
 from rich.text import Text
 
 from mpm_verify.cases.mms.digits.examine import Examined
@@ -11,20 +10,18 @@ from mpm_verify.reports.components.logs import of_comparison
 from mpm_verify.reports.pages._digits import title
 from mpm_verify.reports.sentences import digits
 from mpm_verify.verify.terminal import logs
-from mpm_verify.verify.terminal.table import STYLES, Listened
+from mpm_verify.verify.terminal.table import STYLES, bare, listened
 
 COLOURS = {"AGREES": STYLES["PASS"], "PARTS": STYLES["FAIL"]}
 
 
 def show(examined: Examined, page: Path | None) -> None:
     """Print to standard output, as wide as the terminal is and 100 columns where there is none."""
-    found, out = examined.compared, Listened(highlight=False, soft_wrap=False)
-    if not out.is_terminal:
-        out.width = max(out.width, 100)
+    found, out = examined.compared, listened()
     out.print(Text(f"\n{title(examined)}", "bold"))
     if found.against:
         rows = table(found)
-        shown = Table(box=None, pad_edge=False, header_style="dim")
+        shown = bare()
         for number, name in enumerate(rows.head):
             shown.add_column(name, justify="left" if number < rows.heads else "right")
         for row in rows.rows:

@@ -2,23 +2,19 @@
 
 from pathlib import Path
 
-from rich.table import Table
-
 from mpm_verify.reports.components.cards import summary
 from mpm_verify.reports.components.show_cost import overview
 from mpm_verify.reports.frames import Record
 from mpm_verify.reports.sentences import controls
 from mpm_verify.reports.sentences.headline import headline
-from mpm_verify.verify.terminal.table import Listened, verdict, where
+from mpm_verify.verify.terminal.table import bare, listened, verdict, where
 
 
 def show_overview(record: Record, page: Path | None) -> None:
     """Print to standard output, as wide as the terminal is and wide enough for a line a method where there is none."""
-    out = Listened(highlight=False, soft_wrap=False)
     found = overview(record)
-    if not out.is_terminal:
-        out.width = max(out.width, 100, 17 * len(found.head))
-    table = Table(box=None, pad_edge=False, header_style="dim")
+    out = listened(max(100, 17 * len(found.head)))
+    table = bare()
     for number, name in enumerate(found.head):
         table.add_column(name, justify="left" if number == 0 else "right", overflow="fold")
     for row in found.rows:

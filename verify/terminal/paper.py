@@ -3,13 +3,12 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from rich.table import Table
 from rich.text import Text
 
 from mpm_verify.reports.paper.records import Entry, Status
 from mpm_verify.reports.paper.registered import Change
 from mpm_verify.reports.sentences import paper as words
-from mpm_verify.verify.terminal.table import Listened
+from mpm_verify.verify.terminal.table import bare, listened
 
 STYLES = {Status.HOLDS: "green", Status.IN_PART: "yellow", Status.NO: "red", Status.OPEN: "dim", Status.NOT_RUN: "dim"}
 NARROW = 120
@@ -19,10 +18,8 @@ def show(
     mode: str, entries: Sequence[Entry], changes: Sequence[Change], known: set[str], files: Sequence[Path]
 ) -> None:
     """Print the ledger."""
-    out = Listened(highlight=False, soft_wrap=False)
-    if not out.is_terminal:
-        out.width = max(out.width, NARROW)
-    table = Table(box=None, pad_edge=False, header_style="dim")
+    out = listened(NARROW)
+    table = bare()
     for name in ("claim", "where", "status", "part by part", "hangs on"):
         table.add_column(name, overflow="fold")
     for one in entries:

@@ -38,6 +38,19 @@ class Listened(Console):
         raise BrokenPipeError
 
 
+def listened(width: int = 100) -> Listened:
+    """Console of standard output, as wide as the terminal is, and at least `width` columns where there is none."""
+    out = Listened(highlight=False, soft_wrap=False)
+    if not out.is_terminal:
+        out.width = max(out.width, width)
+    return out
+
+
+def bare() -> Table:
+    """Table without lines, its heads dim."""
+    return Table(box=None, pad_edge=False, header_style="dim")
+
+
 def show(record: Record, page: Path | None, console: Console | None = None) -> None:
     """Print to standard output, as wide as the terminal is and 100 columns where there is none."""
     study, found = record.study, record.findings
@@ -114,7 +127,7 @@ def where(out: Console, page: Path | None, words: str = "") -> None:
 
 def errors_table(record: Record, found: Sequence[Finding]) -> Table:
     """Table of error, local order and crossings at each cell count; a failed run by its reason."""
-    table = Table(box=None, pad_edge=False, header_style="dim")
+    table = bare()
     names = {"ppc": "per cell"} | {"quantity": "quantity", "cells": "cells"}
     heads = [*columns(record, found[0].plan), "quantity", record.by] if found else ["quantity", "cells"]
     for name in heads:
