@@ -1,8 +1,6 @@
 """Running of the studies behind the paper: each into its own folder below one, what any of them holds is not run."""
 
-import shutil
 from collections.abc import Sequence
-from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,8 +9,6 @@ from mpm_verify.verify.run import HOUR, Settings, conduct, duration, estimate
 
 if TYPE_CHECKING:
     from mpm_verify.cases.harness.study import Study
-
-NEWER = (".npz", ".log", ".json")  # the Result last: its file makes a run stored
 
 
 def run(made: "Sequence[Study[Any]]", settings: Settings) -> list[int]:
@@ -48,13 +44,13 @@ def silent(record: Any, page: Path | None) -> None:
 
 def shared(study: "Study[Any]", folder: Path) -> None:
     """Take runs of the study that another one below the folder holds."""
-    mine = folder / study.name / "runs"
+    from mpm_verify.cases.harness.store import Store
+
+    mine = Store(folder / study.name, study.case)
     for run in study.runs:
-        if (mine / f"{run.digest}.json").exists():
+        if (mine.runs / f"{run.digest}.json").exists():
             continue
         for found in folder.glob(f"*/runs/{run.digest}.json"):
-            mine.mkdir(parents=True, exist_ok=True)
-            for ending in NEWER:
-                with suppress(FileNotFoundError):
-                    shutil.copyfile(found.with_suffix(ending), mine / f"{run.digest}{ending}")
+            mine.disk.make(mine.runs)
+            mine.take(Store(found.parent.parent, study.case), run.digest)
             break

@@ -135,6 +135,11 @@ class Store:
                 with suppress(OSError):  # of the run before, where it failed; another machine may write here
                     path.with_suffix(".log").unlink(missing_ok=True)
 
+    def take(self, other: "Store", digest: str) -> None:
+        """Write the files of a run that another store of the same case holds."""
+        found = {ending: (other.runs / digest).with_suffix(ending) for ending in (".npz", ".log", ".json")}
+        self.put_files(digest, {ending: path.read_bytes() for ending, path in found.items() if path.exists()})
+
     def _text(self, record: Any, adapter: TypeAdapter[Any]) -> bytes:
         """A record as it is stored, with the case that it is of. Raises ValueError for one that cannot be read."""
         try:
