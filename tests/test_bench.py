@@ -89,7 +89,7 @@ def test_bits_that_differ_fail() -> None:
 
 
 def test_one_thread_judges_nothing(verify: Call, tmp_path: Path) -> None:
-    """Its bits are its own: INCONCLUSIVE with the reason, on the terminal and on the page, which tells its sizes."""
+    """One thread alone: INCONCLUSIVE with the reason, on the terminal and on the page, which tells its sizes."""
     options = ("--method", "mpm", "--cells", "6", "--ppc", "1,4", "--pairs", "3", "--parallel", "1")
     code, out, _ = verify("bench", *options, "--page", "--out", "study")
     assert code == 3

@@ -218,7 +218,7 @@ COVERED = "return getComputedStyle(document.querySelector(arguments[0])).display
 
 
 def test_points_tell_their_run_and_open_its_card(browser: webdriver.Chrome, page: Path) -> None:
-    """By pointer and by keys; the card has parameters, errors, command and a picture, and closes by Escape."""
+    """Points answer pointer and keys; the card has parameters, errors, command and a picture, and closes by Escape."""
     one = opened(browser, page)
     points = browser.find_elements("css selector", f"{FIRST} .point")
     assert len(points) == sum(map(len, fixtures.U_RMS.values()))
@@ -418,7 +418,7 @@ return [drawn, right / canvas.width, box.querySelector("output").textContent];
 
 @pytest.mark.slow  # ten seconds
 def test_a_film_plays(browser: webdriver.Chrome, tmp_path: Path) -> None:
-    """Its frames are drawn, the sand moves to the right, and the button plays and pauses it."""
+    """Frames are drawn, the sand moves to the right, and the button plays and pauses it."""
     look(browser, column(tmp_path), 1280)
     (drawn, first, told), (_, last, at) = (browser.execute_script(FRAME, frame) for frame in (0, 56))
     assert drawn > 500

@@ -71,7 +71,7 @@ def swept(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_a_column_from_release_to_rest(verify: Any) -> None:
-    """Its numbers, the checks, a page with an animation, and files for ParaView."""
+    """Numbers, checks, a page with an animation, and files for ParaView."""
     ended = verify("column", *SMALL, "--vtk", "--junit", "out.xml")  # snapshots are asked for, so there is a page
     assert (ended.code, ended.err) == (0, "")
     assert "1 of 1 runs came to their end. The front comes to" in ended.out
@@ -154,7 +154,7 @@ def test_a_report_is_made_again(verify: Any, swept: Path) -> None:
 
 
 def test_results_stored_before_a_measure_was_made_are_read(swept: Path, tmp_path: Path) -> None:
-    """Their numbers stand, a dash for what they do not have; claims and refinements are those of the others."""
+    """Old numbers stand, a dash for what they do not have; claims and refinements are those of the others."""
     folder = Path(copytree(swept, tmp_path / "out"))
     for file in (folder / "runs").glob("*.json"):
         told = json.loads(file.read_text())

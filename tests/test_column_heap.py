@@ -69,7 +69,7 @@ def test_a_heap_that_ends_within_a_strip_and_one_that_is_crowded() -> None:
 @pytest.mark.parametrize("made", [column, triangle])
 @pytest.mark.parametrize(("cells", "ppc"), RESOLUTIONS)
 def test_crowding_is_volume_over_space(cells: int, ppc: int, made: Any) -> None:
-    """Of a rectangle and a triangle 1, with 1.3 times the volume 1.3, with half the height 2; a mean over squares."""
+    """Rectangle and triangle have 1, with 1.3 times the volume 1.3, with half the height 2; a mean over squares."""
     x, V = made(cells, ppc, (0.0, 0.0))
     strip = ColumnRun(cells=cells).strip
     assert crowding(x, V, strip) == pytest.approx(1, abs=1e-12)
@@ -121,7 +121,7 @@ def test_fronts_of_a_triangle() -> None:
 
 @pytest.mark.parametrize("slope", [0.0, 0.2, 0.5])
 def test_the_height_at_the_wall_of_a_straight_surface(slope: float) -> None:
-    """To round-off, with three strips of seven that hold anything; one strip at the wall is half a strip too low."""
+    """Round-off, with three strips of seven that hold anything; one strip at the wall is half a strip too low."""
     heights = 0.17 - slope * STRIP * (np.arange(7) + 0.5)
     assert at_wall(heights, STRIP) == pytest.approx(0.17, rel=1e-12)
     for wrong in ((0,), (0, 1), (0, 3, 6)):

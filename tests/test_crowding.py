@@ -91,7 +91,7 @@ def test_what_stands_on_a_side() -> None:
 
 
 def test_space_follows_the_grid_and_its_sides() -> None:
-    """Of another cell, and of other walls, it is another one, though its shape is the same."""
+    """Space of another cell, and of other walls, is another one, though its shape is the same."""
     crowding = Crowding()
     for dx, kind, corner in ((0.1, "roller", 0.25), (0.2, "roller", 0.25), (0.2, "free", 1.0), (0.1, "free", 1.0)):
         m = body(dx=dx)

@@ -156,7 +156,7 @@ def test_standard_error_is_closed(out: str, err: str, arguments: list[str], code
 @pytest.mark.slow
 @pytest.mark.parametrize("redirected", [">&-", ">/dev/full", "2>&-"])
 def test_a_study_whose_end_nobody_reads(tmp_path: Path, redirected: str) -> None:
-    """It is stored; what cannot be printed is no verdict."""
+    """The study is stored; what cannot be printed is no verdict."""
     words = ["material", "linear_elastic", "--test", "isotropic", "--steps", "1", "--no-page", "--out", str(tmp_path)]
     code, err = ended(words, redirected, ">/dev/null" if redirected == "2>&-" else "")
     assert code == (2 if "full" in redirected else 0)

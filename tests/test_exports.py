@@ -73,7 +73,7 @@ def test_a_summary_that_cannot_be_written(verify: Call, made_up: None, tmp_path:
 
 
 def test_times_in_junit(verify: Call, made_up: None, tmp_path: Path) -> None:
-    """Of a verdict those of its runs, of the suite those of all."""
+    """Times of a verdict are those of its runs, of the suite those of all."""
     assert verify(*STUDY, "--junit", "out.xml")[0] == 0
     store = Store(tmp_path / "study")
     results = [store.get(run.digest) for run in store.study().runs]
@@ -173,7 +173,7 @@ SLOW = {"objectivity": [pytest.mark.slow]}  # half a minute
 
 @pytest.mark.parametrize("case", [pytest.param(case, marks=SLOW.get(case, ())) for case in SMALL])
 def test_documents_are_as_their_schema_says(verify: Call, case: str) -> None:
-    """Of real runs. A key too many and one too few are seen."""
+    """Documents of real runs. A key too many and one too few are seen."""
     code, out, err = verify(NAMES.get(case, case), *SMALL[case], "--json", "--jobs", "1", "--out", "study")
     assert code in (0, 1, 3)
     assert err == ""

@@ -61,7 +61,7 @@ def test_the_order_that_a_method_promises() -> None:
 
 
 def test_what_is_expected_of_a_file(tmp_path: Path) -> None:
-    """Of u in rms alone; the file's own order comes first."""
+    """An order of u in rms alone; the file's own order comes first."""
     found = expected("cpdi", EXAMPLE, "neo_hookean", 4, "u", "rms")
     assert found is not None
     assert (found.order, found.source) == (2.0, "declared by the method")
@@ -77,7 +77,7 @@ def test_what_is_expected_of_a_file(tmp_path: Path) -> None:
 def test_the_example_of_the_readme_passes(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """It names no order; it has the name of its file, and its path stands on the page once, and with each run."""
+    """The example names no order; it has its file's name; its path stands on the page once, and with each run."""
     out = tmp_path / "out"
     words = ("mms", "--quick", "--page", "--solution", EXAMPLE, "--jobs", "1", "--out", str(out))
     code, said, err = verify(monkeypatch, capsys, *words)

@@ -152,7 +152,7 @@ def lines_of(*points: list[tuple[float, float]]) -> Figure:
 
 
 def test_points_stand_where_they_are_drawn(tmp_path: Path) -> None:
-    """In per cent of the figure; equal steps of a logarithmic axis are equal steps on the page."""
+    """Places are in per cent of the figure; equal steps of a logarithmic axis are equal steps on the page."""
     figure = lines_of([(0.01, 1e-4), (0.1, 1e-2), (1.0, 1.0)], [(0.01, 1.0)], [(0.1, 1e-3)])
     told = {Run(cells=2 + k).digest: f"run {k}" for k in range(3)}
     image = adder(tmp_path, told=told)("drawn", figure, "Errors.")
@@ -293,7 +293,7 @@ def test_cases_that_state_no_command_have_no_command_of_a_run() -> None:
 
 @pytest.mark.parametrize("case", available(CASES))
 def test_a_case_with_failing_controls_says_so_itself(case: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Its words have `control`, which no list repeats."""
+    """Words of such a case have `control`, which no list repeats."""
     record: Any = SimpleNamespace(study=SimpleNamespace(case=case))
     words_of = importlib.import_module(f"{must_fail.__package__}.{case}") if case not in WORDLESS else must_fail
     monkeypatch.setattr(words_of, "control", lambda record: "it failed, as it must", raising=False)
@@ -335,7 +335,7 @@ def test_a_study_cites_what_it_used(tmp_path: Path) -> None:
 
 
 def test_a_source_without_an_entry_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """In a line that BibTeX passes over, and it is no entry; what is beside it has its own."""
+    """A line tells it that BibTeX passes over, and it is no entry; what is beside it has its own."""
     known = entries()
     lost = known.pop("10.1002/nme.3110")
     monkeypatch.setattr(references, "entries", lambda: known)
@@ -395,7 +395,7 @@ def broken(folder: Path) -> None:
 
 
 def test_an_index_leads_to_folders_of_any_name(verify: Call, tmp_path: Path) -> None:
-    """With signs that mean something in an address: the link, read as one, is the path of the page."""
+    """Names have signs that mean something in an address: the link, read as one, is the path of the page."""
     names = {"a#1", "b?x=1", "c%20d", "e f", "g:h", 'i"&'}
     for name in names:
         broken(tmp_path / "results" / name)
@@ -476,7 +476,7 @@ def test_a_page_of_two_studies(verify: Call, tmp_path: Path) -> None:
 
 
 def test_a_number_that_one_study_lacks_is_a_dash(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """On the terminal and on the page, and its ratio is empty."""
+    """A dash on the terminal and on the page, and an empty ratio."""
     one = Change("run", "u rms", 0.1234567, nan)
     assert (words.value(one.before), words.value(one.after), one.ratio) == ("0.123457", words.DASH, "")
     assert Change("run", "u rms", 0.5, 1.0).ratio == "2 times"

@@ -193,7 +193,7 @@ def test_stresses_of_a_cell_mix(name: str) -> None:
 
 
 def test_what_is_of_one_sign_or_alone_stays() -> None:
-    """To the last bit: all compressed, all open, one particle in a cell."""
+    """Bits stay where all are compressed, all open, one particle in a cell."""
     for name, ppc, opened in ((SANDS[0], 9, 0.0), (SANDS[0], 1, 0.3)):
         m = body(name, opened, ppc)
         if ppc == 1:
